@@ -1,0 +1,28 @@
+// Measures of an assembly: ring polygon, void ratios, stress.
+#pragma once
+
+#include <array>
+
+#include "dem/state.hpp"
+
+namespace dem {
+
+/// Area of the polygon that joins the ring centroids [m^2].
+double ring_area(const State& state);
+
+/// The three void ratios (DESIGN section 2, Preparation).
+struct VoidRatios {
+  double e1 = 0;  ///< ring polygon / solids inside it - 1, boundary particles counted by interior angle / (2 pi)
+  double e2 = 0;  ///< e1 with the overlaps subtracted from the solids
+  double e4 = 0;  ///< ring polygon / area of the non-boundary particles - 1
+};
+VoidRatios void_ratios(const State& state);
+
+/// Mean stress (xx, yy, xy), compression positive [Pa], Eq. 13: (1/A) sum f_i l_j over the contacts in force, branch
+/// vectors between centroids, A the ring polygon.
+std::array<double, 3> mean_stress(const State& state, double assembly_area);
+
+/// Largest extent of the ring centroids along x and y [m].
+Vec2 ring_extent(const State& state);
+
+}  // namespace dem

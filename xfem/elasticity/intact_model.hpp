@@ -1,0 +1,86 @@
+// Linear elasticity of one uncracked particle: mesh, stiffness, one factorization in its life, stress.
+// Plane strain or plane stress, T3 elements, any three dofs fixed and inertia relief (DESIGN section 3).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "xfem/criterion/hoek_brown.hpp"
+#include "xfem/mesh.hpp"
+
+namespace xfem {
+
+/// A force on the particle at a point of (or near) its boundary; body frame.
+struct Load {
+  Vec2 point;  ///< [m]
+  Vec2 force;  ///< [N]
+};
+
+struct ElasticConstants {
+  double young_modulus;  ///< [Pa]
+  double poisson_ratio;  ///< [-]
+  bool plane_stress = false;
+  /// Tension-positive constitutive matrix D of (xx, yy, 2 xy), 3 x 3 [Pa].
+  Eigen::Matrix3d matrix() const;
+};
+
+/// Strain-displacement data of a T3 element: constant gradients of its three shape functions [1/m].
+struct ElementGradients {
+  std::array<Vec2, 3> gradient;
+};
+
+class IntactModel {
+ public:
+  IntactModel(Mesh mesh, const ElasticConstants& constants);
+  ~IntactModel();
+  IntactModel(IntactModel&&) noexcept;
+  IntactModel& operator=(IntactModel&&) noexcept;
+
+  const Mesh& mesh() const;
+  const ElasticConstants& constants() const;
+  const std::vector<ElementGradients>& gradients() const;
+  /// Global dof 2 * node + component. Number of dofs, 2 n.
+  int dofs() const;
+  /// The three dofs that are held, ascending.
+  const std::array<int, 3>& fixed_dofs() const;
+
+  /// Nodal forces (2 n) [N] of the loads as consistent edge loads at the nearest point of the boundary (`patch` > 0:
+  /// spread evenly over that length along the boundary, resultant and moment kept), plus the body force of the rigid
+  /// acceleration that balances them (inertia relief): their sum and moment vanish.
+  Eigen::VectorXd nodal_forces(std::span<const Load> loads, double patch = 0) const;
+  /// |resultant of the loads| / sum of |load|, before inertia relief.
+  static double unbalance(std::span<const Load> loads);
+
+  /// Displacements (2 n) [m] for nodal forces (2 n); the fixed dofs come out zero.
+  Eigen::VectorXd solve(const Eigen::VectorXd& forces) const;
+  /// The same for many right-hand sides at once (2 n x k).
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& forces) const;
+
+  /// Element stresses, compression positive [Pa].
+  std::vector<Stress> stresses(const Eigen::VectorXd& displacement) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Area average of the element stresses over a disc of `radius` about each element's centroid (elements whose centroid
+/// lies inside; at least the element itself). radius = 0: the element's own stress.
+class StressAverage {
+ public:
+  StressAverage(const Mesh& mesh, double radius);
+  std::vector<Stress> operator()(std::span<const Stress> element_stress) const;
+
+ private:
+  std::vector<int> offset_, element_;
+  std::vector<double> weight_;
+};
+
+/// Virial mean stress sum(f (x) x) / A of loads with inertia relief, compression positive [Pa]; it equals the
+/// area-weighted mean of the element stresses to rounding, cracked or not.
+Stress virial_stress(std::span<const Load> loads, PolygonView outline);
+
+}  // namespace xfem
