@@ -13,12 +13,12 @@ namespace xfem {
 
 struct BreakageParameters {
   HoekBrown rock{150e6, 25};
-  double initiation_radius = 0.1;   ///< in De = sqrt(4 A / pi); 0: element stress
-  double load_patch = 0;            ///< in De; 0: point loads
-  double minimum_fragment = 0.03;   ///< fraction of the parent's area
-  double minimum_area = 0.02;       ///< [m^2]
+  double initiation_radius = 0.1;  ///< in De = sqrt(4 A / pi); 0: element stress
+  double load_patch = 0;           ///< in De; 0: point loads
+  double minimum_fragment = 0.03;  ///< fraction of the parent's area
+  double minimum_area = 0.02;      ///< [m^2]
   int max_cracks = 3;
-  bool literal = false;             ///< the paper's own reading
+  bool literal = false;  ///< the paper's own reading
   /// A laboratory test grows the crack at the load at which it starts (lambda >= 1 allowed), so that the loads given
   /// here are multiplied by this factor before anything else.
   double load_factor = 1;
@@ -35,16 +35,16 @@ struct ParticleModel {
 
 struct BreakageResult {
   common::ParticleStatus status = common::ParticleStatus::intact;
-  std::string reason;                        ///< of a refusal or an arrest, else empty
-  Stress mean_stress;                        ///< area average over the elements, body frame, compression positive
-  double min_safety_factor = 0;              ///< smallest load factor of the uncracked averaged field, +inf if unloaded
-  int critical_element = -1;                 ///< where it stands
+  std::string reason;            ///< of a refusal or an arrest, else empty
+  Stress mean_stress;            ///< area average over the elements, body frame, compression positive
+  double min_safety_factor = 0;  ///< smallest load factor of the uncracked averaged field, +inf if unloaded
+  int critical_element = -1;     ///< where it stands
   FailureMode failure_mode = FailureMode::none;
-  std::vector<Crack> cracks;                 ///< all cracks after the analysis (also of a broken particle)
-  std::optional<std::array<Vec2, 2>> path;   ///< breakage line, body frame, if broken
-  Polygon left, right;                       ///< fragments in the parent's body frame, if broken
+  std::vector<Crack> cracks;                ///< all cracks after the analysis (also of a broken particle)
+  std::optional<std::array<Vec2, 2>> path;  ///< breakage line, body frame, if broken
+  Polygon left, right;                      ///< fragments in the parent's body frame, if broken
   int growth_steps = 0;
-  double unbalance = 0;                      ///< IntactModel::unbalance of the loads
+  double unbalance = 0;  ///< IntactModel::unbalance of the loads
 };
 
 /// Analyses one particle: re-enters its stored cracks, tests initiation and growth, one element per step and tip, and

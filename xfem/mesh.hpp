@@ -15,13 +15,14 @@ using common::Vec2;
 
 /// A conforming triangulation with its topology. A pure function of the outline and the requested number of nodes.
 struct Mesh {
-  std::vector<Vec2> nodes;                          ///< n x 2 [m]
-  std::vector<std::array<int, 3>> triangles;        ///< e x 3 node indices, counter-clockwise
-  std::vector<std::array<int, 3>> neighbours;       ///< e x 3; triangle across the edge opposite to local node k, -1: boundary
-  std::vector<int> element_offset;                  ///< n + 1; elements around node i are node_elements[offset[i]...)
+  std::vector<Vec2> nodes;                    ///< n x 2 [m]
+  std::vector<std::array<int, 3>> triangles;  ///< e x 3 node indices, counter-clockwise
+  std::vector<std::array<int, 3>>
+      neighbours;                   ///< e x 3; triangle across the edge opposite to local node k, -1: boundary
+  std::vector<int> element_offset;  ///< n + 1; elements around node i are node_elements[offset[i]...)
   std::vector<int> node_elements;
-  std::vector<double> areas;                        ///< e [m^2]
-  double size = 0;                                  ///< h: mean edge length [m]
+  std::vector<double> areas;  ///< e [m^2]
+  double size = 0;            ///< h: mean edge length [m]
 
   /// Local number (0..2) of the edge of triangle `t` that lies between nodes a and b (the edge opposite to that local
   /// node); -1 if there is none.

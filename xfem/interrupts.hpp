@@ -1,0 +1,18 @@
+// SIGINT and SIGTERM end the process with exit code 130 or 143, but never in the middle of writing a file.
+#pragma once
+
+namespace xfem {
+
+/// Installs the handlers; called once, by `main`.
+void exit_on_signals();
+
+/// While one of these lives, a signal waits; it ends the process when the object goes. Not nested.
+class NoInterruption {
+ public:
+  NoInterruption();
+  ~NoInterruption();
+  NoInterruption(const NoInterruption&) = delete;
+  NoInterruption& operator=(const NoInterruption&) = delete;
+};
+
+}  // namespace xfem

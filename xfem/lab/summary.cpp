@@ -1,0 +1,115 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+
+#include "common/io/immutable_file.hpp"
+#include "xfem/lab/report.hpp"
+
+namespace xfem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity: what was never reached is null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json point(const Vec2& p) {
+  return {p.x(), p.y()};
+}
+
+const char* name_of(common::ParticleStatus status) {
+  switch (status) {
+    case common::ParticleStatus::broken:
+      return "broken";
+    case common::ParticleStatus::refused:
+      return "refused";
+    default:
+      return "arrested";
+  }
+}
+
+const char* name_of(FailureMode mode) {
+  switch (mode) {
+    case FailureMode::tension:
+      return "tension";
+    case FailureMode::shear:
+      return "shear";
+    default:
+      return "none";
+  }
+}
+
+/// The longest crack, as a polyline.
+Json crack_path(const std::vector<Crack>& cracks) {
+  Json longest = Json::array();
+  double length = 0;
+  for (const Crack& crack : cracks) {
+    Json points = Json::array();
+    double sum = 0;
+    for (std::size_t i = 0; i < crack.points.size(); ++i) {
+      points.push_back(point(crack.points[i].position));
+      if (i > 0) sum += (crack.points[i].position - crack.points[i - 1].position).norm();
+    }
+    if (sum > length) {
+      longest = std::move(points);
+      length = sum;
+    }
+  }
+  return longest;
+}
+
+}  // namespace
+
+std::optional<double> fracture_angle_degrees(const BreakageResult& result) {
+  if (!result.path) return std::nullopt;
+  const Vec2 chord = (*result.path)[1] - (*result.path)[0];
+  return std::atan2(std::abs(chord.x()), std::abs(chord.y())) * 180 / std::numbers::pi;
+}
+
+void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup, const LabResult& result,
+                       const common::LabTest& test) {
+  Json summary;
+  summary["schema"] = "lab/1";
+  summary["test"] = setup.test;
+  if (setup.test == "brazilian")
+    summary["specimen"] = {{"diameter", test.specimen.diameter}, {"sides", test.specimen.sides}};
+  else
+    summary["specimen"] = {{"width", test.specimen.width}, {"height", test.specimen.height}};
+  summary["specimen"]["area"] = common::area(setup.outline);
+  summary["mesh"] = {{"nodes", result.mesh.nodes.size()}, {"elements", result.mesh.triangles.size()}};
+  summary["analytical"]["breakage_load"] = setup.theory_load;
+  for (const auto& [name, value] : setup.theory) summary["analytical"][name] = value;
+  summary["first_failure_load"] = number(result.first_failure_load);
+  summary["breakage_load"] = number(result.breakage_load);
+  summary["ratio"] = number(result.breakage_load / setup.theory_load);
+  summary["ratio_first_failure"] = number(result.first_failure_load / setup.theory_load);
+  if (summary["analytical"].contains("tensile_load")) {
+    const double tensile = summary["analytical"]["tensile_load"];
+    summary["ratio_tensile"] = {{"first_failure", number(result.first_failure_load / tensile)},
+                                {"breakage", number(result.breakage_load / tensile)}};
+  }
+  summary["load_step"] = kLoadStep;
+  summary["first_failure_point"] = point(result.first_failure_point);
+  summary["failure_mode"] = name_of(result.breakage.failure_mode);
+  summary["crack_path"] = crack_path(result.breakage.cracks);
+  summary["breakage_line"] = Json::array();
+  if (result.breakage.path)
+    for (const Vec2& end : *result.breakage.path) summary["breakage_line"].push_back(point(end));
+  const std::optional<double> angle = fracture_angle_degrees(result.breakage);
+  summary["fracture_angle_deg"] = angle ? Json(*angle) : Json(nullptr);
+  summary["fragments"] = Json::array();
+  if (result.breakage.path)
+    for (const Polygon* fragment : {&result.breakage.left, &result.breakage.right})
+      summary["fragments"].push_back({{"area", common::area(*fragment)}});
+  summary["growth_steps"] = result.growth_steps;
+  summary["status"] = name_of(result.breakage.status);
+  if (!result.breakage.reason.empty()) summary["reason"] = result.breakage.reason;
+  summary["seconds"] = result.seconds;
+  const std::string text = summary.dump(2) + "\n";
+  common::write_atomically(file, std::as_bytes(std::span(text)), {});
+}
+
+}  // namespace xfem

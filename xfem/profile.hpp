@@ -1,0 +1,13 @@
+// `--profile FILE.json`: seconds and counts per phase, so that this half can be profiled alone.
+#pragma once
+
+#include <filesystem>
+
+#include "xfem/solve_frame.hpp"
+
+namespace xfem {
+
+/// Writes {"seconds": {phase: s}, "counts": {name: n}}. Throws io_failure.
+void write_profile(const std::filesystem::path& file, const PhaseSeconds& seconds, const PhaseCounts& counts);
+
+}  // namespace xfem
