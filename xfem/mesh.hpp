@@ -31,8 +31,16 @@ struct Mesh {
   int locate(const Vec2& point) const;
 };
 
+/// Completes nodes and counter-clockwise triangles to a mesh (neighbours, node -> elements, areas, size).
+/// Throws numerical_failure if a triangle has no positive area.
+Mesh connect(std::vector<Vec2> nodes, std::vector<std::array<int, 3>> triangles);
+
+/// Nodes of the boundary in counter-clockwise order, from the boundary node of lowest index.
+std::vector<int> boundary_loop(const Mesh& mesh);
+
 /// Meshes a convex counter-clockwise outline with about `nodes` nodes (within 10 % where the outline's corners allow),
 /// smallest angle >= 20 degrees where the outline allows. All outline vertices are nodes; areas sum to the outline's.
+/// Boundary nodes come first, counter-clockwise from outline vertex 0 (which is node 0); triangles ascend.
 /// Throws numerical_failure for an outline that cannot be meshed.
 Mesh make_mesh(PolygonView outline, int nodes);
 

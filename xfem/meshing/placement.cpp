@@ -1,0 +1,135 @@
+#include "xfem/meshing/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace xfem {
+
+using common::PolygonView;
+using common::Vec2;
+
+namespace {
+
+constexpr double kGrading = 0.8;      // growth of the edge length with the distance from a short edge
+constexpr double kFinest = 1.0 / 8;   // smallest wanted edge length, in h
+constexpr double kClearance = 0.62;   // of lattice points from the outline, in local edge lengths
+constexpr double kSeparation = 0.75;  // of lattice points of different levels, in local edge lengths
+constexpr int kSamples = 32;          // of the size field along an edge
+
+/// Splits the edge at equal steps of the integral of 1 / size; positions in [0, 1), the first 0.
+std::vector<double> subdivide(const Vec2& from, const Vec2& to, const SizeField& size) {
+  const double length = (to - from).norm();
+  if (size.uniform()) {
+    const int pieces = std::max(1, static_cast<int>(std::floor(length / size.h() + 0.5)));
+    std::vector<double> result;
+    for (int k = 0; k < pieces; ++k) result.push_back(static_cast<double>(k) / pieces);
+    return result;
+  }
+  std::vector<double> integral(kSamples + 1, 0.0);
+  for (int k = 0; k < kSamples; ++k) {
+    const double middle = (k + 0.5) / kSamples;
+    integral[k + 1] = integral[k] + length / kSamples / size(from + middle * (to - from));
+  }
+  const int pieces = std::max(1, static_cast<int>(std::floor(integral[kSamples] + 0.5)));
+  std::vector<double> result{0.0};
+  int cell = 0;
+  for (int k = 1; k < pieces; ++k) {
+    const double wanted = integral[kSamples] * k / pieces;
+    while (integral[cell + 1] < wanted) ++cell;
+    result.push_back((cell + (wanted - integral[cell]) / (integral[cell + 1] - integral[cell])) / kSamples);
+  }
+  return result;
+}
+
+double outline_distance(const Vec2& point, PolygonView outline) {
+  double result = segment_distance(point, outline.back(), outline.front());
+  for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+    result = std::min(result, segment_distance(point, outline[i], outline[i + 1]));
+  }
+  return result;
+}
+
+Vec2 longest_edge_direction(PolygonView outline) {
+  Vec2 result(1, 0);
+  double longest = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i];
+    // The margin makes equal lengths (regular polygons) fall on the first edge whatever the rounding.
+    if (edge.norm() > longest * (1 + 1e-6)) {
+      longest = edge.norm();
+      result = edge / longest;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+double segment_distance(const Vec2& point, const Vec2& from, const Vec2& to) {
+  const Vec2 edge = to - from;
+  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (point - from - t * edge).norm();
+}
+
+SizeField::SizeField(PolygonView outline, double h) : h_(h) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2& to = outline[(i + 1) % outline.size()];
+    const double length = (to - outline[i]).norm();
+    if (length < 0.75 * h) short_edges_.push_back({outline[i], to, length});
+  }
+}
+
+double SizeField::operator()(const Vec2& point) const {
+  double result = h_;
+  for (const Edge& edge : short_edges_) {
+    result = std::min(result, edge.length + kGrading * segment_distance(point, edge.from, edge.to));
+  }
+  return std::max(result, kFinest * h_);
+}
+
+Placement place_points(PolygonView outline, const SizeField& size, const Vec2& shift) {
+  Placement result;
+  const std::size_t corners = outline.size();
+  for (std::size_t i = 0; i < corners; ++i) {
+    const Vec2& to = outline[(i + 1) % corners];
+    for (const double t : subdivide(outline[i], to, size)) {
+      result.points.push_back(outline[i] + t * (to - outline[i]));
+      result.on_edge.emplace_back(static_cast<int>(i), t);
+    }
+  }
+  double radius = 0;
+  for (const Vec2& vertex : outline) radius = std::max(radius, vertex.norm());
+
+  // Lattices of spacing h, h/2, h/4, h/8, the finest first; each serves where the wanted edge length is nearest to it.
+  const Vec2 along = longest_edge_direction(outline);
+  const Vec2 across = common::perpendicular(along);
+  const double row_height = std::sqrt(0.75);
+  const std::size_t boundary = result.points.size();
+  for (int level = size.uniform() ? 0 : 3; level >= 0; --level) {
+    const double spacing = size.h() / (1 << level);
+    const double low = level == 3 ? 0.0 : spacing * std::sqrt(0.5);
+    const double high = level == 0 ? 2 * size.h() : spacing * std::sqrt(2.0);
+    const int rows = static_cast<int>(radius / (row_height * spacing)) + 2;
+    const int columns = static_cast<int>(radius / spacing) + 2;
+    for (int row = -rows; row <= rows; ++row) {
+      for (int column = -columns; column <= columns; ++column) {
+        const double x = (column + shift.x() + ((row & 1) != 0 ? 0.5 : 0.0)) * spacing;
+        const double y = (row + shift.y()) * row_height * spacing;
+        const Vec2 point = x * along + y * across;
+        const double wanted = size(point);
+        if (wanted < low || wanted >= high || !common::contains(outline, point)) continue;
+        if (outline_distance(point, outline) < kClearance * wanted) continue;
+        bool free = true;
+        if (!size.uniform()) {
+          for (std::size_t k = boundary; k < result.points.size() && free; ++k) {
+            free = (result.points[k] - point).squaredNorm() >= kSeparation * kSeparation * wanted * wanted;
+          }
+        }
+        if (free) result.points.push_back(point);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace xfem
