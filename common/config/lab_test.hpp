@@ -19,9 +19,9 @@ struct SpecimenOptions {
 };
 
 struct LabLoading {
-  double confining_stress = 0;   ///< [Pa]
-  double platen_friction = 0;    ///< [-]
-  double patch = 0;              ///< width over which a point load is spread, in De; 0: point load
+  double confining_stress = 0;  ///< [Pa]
+  double platen_friction = 0;   ///< [-]
+  double patch = 0;             ///< width over which a point load is spread, in De; 0: point load
 };
 
 struct LabTest {
@@ -29,9 +29,9 @@ struct LabTest {
   LabTestKind test = LabTestKind::brazilian;
   MaterialOptions material;
   SpecimenOptions specimen;
-  int mesh_nodes = 150;          ///< key mesh.nodes
+  int mesh_nodes = 150;  ///< key mesh.nodes
   LabLoading loading;
-  BreakageOptions breakage;      ///< `nodes` and `interval` are not used here
+  BreakageOptions breakage;  ///< `nodes` and `interval` are not used here
 };
 
 /// As read_scene. Kinds that this version cannot run are refused with a message that lists those it can.

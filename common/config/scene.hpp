@@ -23,23 +23,23 @@ struct Effects {
 };
 
 struct MaterialOptions {
-  double density = 2500;          ///< [kg/m^3]
-  double sigma_ci = 150e6;        ///< uniaxial compressive strength [Pa]
-  double m_i = 25;                ///< Hoek-Brown [-]
-  double young_modulus = 20e9;    ///< [Pa]
-  double poisson_ratio = 0.2;     ///< [-]
-  bool plane_stress = false;      ///< plane strain otherwise
+  double density = 2500;        ///< [kg/m^3]
+  double sigma_ci = 150e6;      ///< uniaxial compressive strength [Pa]
+  double m_i = 25;              ///< Hoek-Brown [-]
+  double young_modulus = 20e9;  ///< [Pa]
+  double poisson_ratio = 0.2;   ///< [-]
+  bool plane_stress = false;    ///< plane strain otherwise
 };
 
 /// Shape types: a list of outlines, or drawn from the seeded generator.
 struct ShapeOptions {
-  std::string source = "generated";   ///< generated | outlines | file
-  int types = 12;                     ///< number of generated shape types
+  std::string source = "generated";  ///< generated | outlines (read_scene turns `file` into outlines)
+  int types = 12;                    ///< number of generated shape types
   int corners_min = 5, corners_max = 8;
-  double roughness = 0.25;            ///< 0: regular polygons; relative scatter of corner angles
-  double aspect = 1.0;                ///< smallest ratio of width to length drawn, (0, 1]
-  std::vector<Polygon> outlines;      ///< source outlines: each at least 3 points, any scale
-  std::string file;                   ///< source file: CSV (type,x,y) or YAML list of outlines; relative to the scene
+  double roughness = 0.25;        ///< 0: regular polygons; relative scatter of corner angles
+  double aspect = 1.0;            ///< smallest ratio of width to length drawn, (0, 1]
+  std::vector<Polygon> outlines;  ///< source outlines: each at least 3 points, any scale
+  std::string file;  ///< where the outlines were read: CSV (type,x,y) or YAML; absolute; empty: from nowhere
 };
 
 struct AssemblyOptions {
@@ -53,9 +53,9 @@ enum class ContactLaw { mean_depth, area, potential };
 
 struct ContactOptions {
   ContactLaw law = ContactLaw::area;
-  double normal_stiffness = 5e9;                  ///< N/m for mean_depth and potential, N/m^2 for area
-  std::optional<double> tangential_stiffness;     ///< [N/m]; absent (auto): see contact/laws
-  double friction = 0.5;                          ///< Coulomb coefficient in shear [-]
+  double normal_stiffness = 5e9;               ///< N/m for mean_depth and potential, N/m^2 for area
+  std::optional<double> tangential_stiffness;  ///< [N/m]; absent (auto): see contact/laws
+  double friction = 0.5;                       ///< Coulomb coefficient in shear [-]
 };
 
 struct DampingOptions {
@@ -69,46 +69,46 @@ struct TimeStepOptions {
 enum class VoidRatioDefinition { e1, e2, e4 };
 
 struct PreparationOptions {
-  double confining_pressure = 2e6;                     ///< [Pa]
-  double void_ratio = 0.30;                            ///< target before shear [-]
+  double confining_pressure = 2e6;  ///< [Pa]
+  double void_ratio = 0.30;         ///< target before shear [-]
   VoidRatioDefinition definition = VoidRatioDefinition::e4;
   double void_ratio_tolerance = 0.002;
-  double compaction_rate = 0.3;                        ///< affine compaction [1/s]
-  double initial_friction = 1.0;                       ///< during confinement, before it is lowered [-]
-  double unbalanced_force = 1e-3;                      ///< at rest: mean |sum F| over mean normal force [-]
-  std::string from;                                    ///< start from this prepared frame; empty: prepare
+  double compaction_rate = 0.3;    ///< affine compaction [1/s]
+  double initial_friction = 1.0;   ///< during confinement, before it is lowered [-]
+  double unbalanced_force = 1e-3;  ///< at rest: mean |sum F| over mean normal force [-]
+  std::string from;                ///< start from this prepared frame (absolute once read); empty: prepare
 };
 
 struct ServoOptions {
-  double modulus = 1e8;     ///< K [Pa]: assembly stiffness that the gains refer to
-  double max_rate = 0;      ///< largest lateral strain rate [1/s]; 0 (auto)
+  double modulus = 1e8;  ///< K [Pa]: assembly stiffness that the gains refer to
+  double max_rate = 0;   ///< largest lateral strain rate [1/s]; 0 (auto)
 };
 
 struct ShearOptions {
   double axial_strain = 0.173;
-  double strain_rate = 0.02;                  ///< [1/s]
-  double ramp_strain = 0.001;                 ///< axial strain over which the rate grows from zero
-  std::optional<double> frame_interval;       ///< axial strain between frames without breakage; auto: 0.005
-  int history_interval = 100;                 ///< steps between two history rows
+  double strain_rate = 0.02;             ///< [1/s]
+  double ramp_strain = 0.001;            ///< axial strain over which the rate grows from zero
+  std::optional<double> frame_interval;  ///< axial strain between frames without breakage; auto: 0.005
+  int history_interval = 100;            ///< steps between two history rows
 };
 
 struct BreakageOptions {
-  double interval = 0.0005;          ///< axial strain between two analyses
-  int nodes = 150;                   ///< mesh nodes of a particle
-  double initiation_radius = 0.1;    ///< stress averaging radius at initiation, in De
-  double minimum_fragment = 0.03;    ///< fraction of the parent's area
-  double minimum_area = 0.02;        ///< [m^2]
-  int max_cracks = 3;                ///< per particle
-  bool literal = false;              ///< the paper's own reading: point loads, radius 0, adjacent element
+  double interval = 0.0005;        ///< axial strain between two analyses
+  int nodes = 150;                 ///< mesh nodes of a particle
+  double initiation_radius = 0.1;  ///< stress averaging radius at initiation, in De
+  double minimum_fragment = 0.03;  ///< fraction of the parent's area
+  double minimum_area = 0.02;      ///< [m^2]
+  int max_cracks = 3;              ///< per particle
+  bool literal = false;            ///< the paper's own reading: point loads, radius 0, adjacent element
 };
 
 struct OutputOptions {
-  Durability durability;             ///< none | every | N
-  int keep_frames = 0;               ///< 0: all; n: the newest n (and the first and last)
+  Durability durability;  ///< none | every | N
+  int keep_frames = 0;    ///< 0: all; n: the newest n (and the first and last)
 };
 
 struct Scene {
-  std::filesystem::path file;        ///< where it was read; empty if made in code
+  std::filesystem::path file;  ///< where it was read; empty if made in code
   std::uint64_t seed = 1;
   Effects effects;
   MaterialOptions material;
@@ -135,7 +135,9 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides =
 /// and every key commented with its unit and description.
 std::string to_yaml(const Scene& scene);
 
-/// Hex XXH3-128 over the resolved keys that the executable uses; never `output`, threads or file names of the scene.
+/// Hex XXH3-128 over the resolved keys that the executable (dem or xfem) uses; never `output`, threads or file names:
+/// of `assembly.shapes.file` the outlines count, and the frame named by `preparation.from` records its own
+/// configuration.
 std::string config_hash(const Scene& scene, UsedBy executable);
 
 /// Every key of a scene, in order, for `explain` and the documentation.

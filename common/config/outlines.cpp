@@ -1,0 +1,114 @@
+#include "common/config/outlines.hpp"
+
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "common/config/document.hpp"
+#include "common/config/specification.hpp"
+#include "common/config/values.hpp"
+#include "common/error.hpp"
+
+namespace common {
+namespace {
+
+double read_coordinate(const Value& value, const std::string& path) {
+  const auto number = value.is_scalar() && !value.quoted ? parse_number(value.text) : std::nullopt;
+  if (!number) refuse(value, path, "a number");
+  return *number;
+}
+
+void check_outline(const Polygon& outline, std::size_t index, const std::string& where, const std::string& path) {
+  const std::string defect = outline_defect(outline);
+  if (defect.empty()) return;
+  throw bad_input(where + ": " + path + ": outline " + std::to_string(index) + " (counted from 0): " + defect +
+                  "; expected a convex outline, counter-clockwise");
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<Polygon> read_csv(const std::filesystem::path& file) {
+  errno = 0;
+  std::ifstream stream(file);
+  if (!stream) throw bad_input(file.string() + ": the file cannot be read: " + std::strerror(errno));
+  std::vector<Polygon> outlines;
+  std::vector<std::string> starts;  // place of each outline's first row
+  std::string type, line;
+  bool header_allowed = true;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#') continue;
+    const std::string where = file.string() + ':' + std::to_string(number);
+    std::vector<std::string> fields;
+    std::istringstream parts(line);
+    for (std::string field; std::getline(parts, field, ',');) fields.push_back(trimmed(field));
+    const bool complete = fields.size() == 3;
+    const auto x = complete ? parse_number(fields[1]) : std::nullopt;
+    const auto y = complete ? parse_number(fields[2]) : std::nullopt;
+    if (!x || !y) {
+      const bool header = complete && header_allowed && !x && !y && !looks_like_number(fields[1]);
+      if (!header) throw bad_input(where + ": found " + in_quotes(line) + ", expected type,x,y with two numbers");
+    } else {
+      if (outlines.empty() || fields[0] != type) {
+        outlines.emplace_back();
+        starts.push_back(where);
+        type = fields[0];
+      }
+      outlines.back().emplace_back(*x, *y);
+    }
+    header_allowed = false;
+  }
+  if (outlines.empty()) throw bad_input(file.string() + ": the file has no outlines, expected rows of type,x,y");
+  for (std::size_t i = 0; i < outlines.size(); ++i) check_outline(outlines[i], i, starts[i], "outlines");
+  return outlines;
+}
+
+}  // namespace
+
+std::vector<Polygon> read_outlines(const Value& list, const std::string& path) {
+  if (!list.is_list()) refuse(list, path, "a list of outlines, each a list of [x, y]");
+  std::vector<Polygon> outlines;
+  for (const Value& points : list.items) {
+    if (!points.is_list()) refuse(points, path, "an outline, which is a list of [x, y]");
+    Polygon outline;
+    for (const Value& point : points.items) {
+      if (!point.is_list() || point.items.size() != 2) refuse(point, path, "a vertex [x, y]");
+      const double x = read_coordinate(point.items[0], path);
+      const double y = read_coordinate(point.items[1], path);
+      outline.emplace_back(x, y);
+    }
+    check_outline(outline, outlines.size(), points.where, path);
+    outlines.push_back(std::move(outline));
+  }
+  return outlines;
+}
+
+std::vector<Polygon> read_outline_file(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw bad_input(file.string() + ": the file does not exist");
+  if (std::filesystem::is_directory(file)) {
+    throw bad_input(file.string() + ": found a directory, expected a file of outlines");
+  }
+  if (file.extension() == ".csv") return read_csv(file);
+  std::vector<Polygon> outlines = read_outlines(load_document(file), "outlines");
+  if (outlines.empty()) throw bad_input(file.string() + ": the list is empty, expected at least one outline");
+  return outlines;
+}
+
+std::string print_outlines(const std::vector<Polygon>& outlines) {
+  std::string text = "[";
+  for (const Polygon& outline : outlines) {
+    text += text.size() > 1 ? ", [" : "[";
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      text += (i > 0 ? ", [" : "[") + print_number(outline[i].x()) + ", " + print_number(outline[i].y()) + "]";
+    }
+    text += "]";
+  }
+  return text + "]";
+}
+
+}  // namespace common

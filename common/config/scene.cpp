@@ -1,0 +1,328 @@
+#include "common/config/scene.hpp"
+
+#include "common/config/document.hpp"
+#include "common/config/outlines.hpp"
+#include "common/config/sections.hpp"
+#include "common/config/suggestion.hpp"
+#include "common/config/values.hpp"
+#include "common/error.hpp"
+
+namespace common {
+namespace {
+
+constexpr int kMany = 10'000'000;
+
+struct NamedEffect {
+  const char* name;
+  bool Effects::*member;
+  UsedBy used_by;
+};
+constexpr NamedEffect kEffects[] = {
+    {"friction", &Effects::friction, UsedBy::dem},
+    {"local_damping", &Effects::local_damping, UsedBy::dem},
+    {"energy_ledger", &Effects::energy_ledger, UsedBy::dem},
+    {"breakage", &Effects::breakage, UsedBy::both},
+};
+
+Effects read_effects(const Value& list, const std::string& expected) {
+  std::vector<std::string> names;
+  for (const NamedEffect& effect : kEffects) names.emplace_back(effect.name);
+  if (!list.is_list()) refuse(list, "effects", expected);
+  Effects effects;
+  for (const Value& item : list.items) {
+    bool known = false;
+    for (const NamedEffect& effect : kEffects) {
+      if (!item.is_scalar() || item.text != effect.name) continue;
+      if (effects.*effect.member) {
+        throw bad_input(item.where + ": effects: found " + in_quotes(item.text) + " twice, expected each effect once");
+      }
+      effects.*effect.member = known = true;
+    }
+    if (known) continue;
+    throw bad_input(item.where + ": effects: found " + describe(item) + ", expected " + expected +
+                    (item.is_scalar() && !nearest_name(item.text, names).empty() ? suggestion(item.text, names, "")
+                                                                                 : std::string()));
+  }
+  return effects;
+}
+
+// The effects that an executable looks at; all of them for printing.
+std::string print_effects(const Effects& effects, UsedBy executable) {
+  std::vector<std::string> names;
+  for (const NamedEffect& effect : kEffects) {
+    const bool counts = executable == UsedBy::neither || effect.used_by == executable || effect.used_by == UsedBy::both;
+    if (counts && effects.*effect.member) names.emplace_back(effect.name);
+  }
+  return "[" + join(names) + "]";
+}
+
+void bind_assembly(Specification& keys, AssemblyOptions& assembly) {
+  keys.integer("assembly.particles", assembly.particles, 1, kMany, "-", UsedBy::dem,
+               "number of particles generated (Table 1: 1194)");
+  keys.number("assembly.diameter_min", assembly.diameter_min, kPositive, "m", UsedBy::dem,
+              "smallest diameter, the longest distance between two vertices; sizes are uniform in between (Table 1)");
+  keys.number("assembly.diameter_max", assembly.diameter_max, kPositive, "m", UsedBy::dem,
+              "largest diameter (Table 1)");
+
+  ShapeOptions& shapes = assembly.shapes;
+  const std::vector<std::string> sources{"generated", "outlines", "file"};
+  keys.named(
+      "assembly.shapes.source", sources, [&shapes, sources](int i) { shapes.source = sources[i]; },
+      [&shapes] { return shapes.source == "generated"  ? 0
+                         : shapes.source == "outlines" ? 1
+                                                       : 2; }, UsedBy::dem,
+      "where the shape types come from; a file is read into `outlines`");
+  keys.integer("assembly.shapes.types", shapes.types, 1, kMany, "-", UsedBy::dem,
+               "generated: number of shape types drawn");
+  keys.integer("assembly.shapes.corners_min", shapes.corners_min, 3, 32, "-", UsedBy::dem,
+               "generated: fewest corners (the paper's figures show 5 to 8)");
+  keys.integer("assembly.shapes.corners_max", shapes.corners_max, 3, 32, "-", UsedBy::dem, "generated: most corners");
+  keys.number("assembly.shapes.roughness", shapes.roughness, {0, 1, false, true}, "-", UsedBy::dem,
+              "generated: relative scatter of the corner angles; 0: regular polygons");
+  keys.number("assembly.shapes.aspect", shapes.aspect, {0, 1, true, false}, "-", UsedBy::dem,
+              "generated: smallest ratio of width to length drawn; 1: equant");
+  keys.custom(
+      {"assembly.shapes.outlines", "any", "outlines: each a list of [x, y], convex, counter-clockwise",
+       "a list of outlines, each a list of [x, y]", UsedBy::dem},
+      [&shapes](const Value& value) { shapes.outlines = read_outlines(value, "assembly.shapes.outlines"); },
+      [&shapes](UsedBy) { return print_outlines(shapes.outlines); });
+  keys.text("assembly.shapes.file", shapes.file, "a file name", UsedBy::neither,
+            "file: outlines as CSV (type,x,y) or YAML; relative to the scene's folder");
+  keys.shorthand("assembly.shapes", [](const Value& value) {
+    const auto scalar = [&value](const std::string& text) {
+      Value result;
+      result.kind = Value::Kind::scalar;
+      result.text = text;
+      result.where = value.where;
+      return result;
+    };
+    Value none = scalar("");
+    none.kind = Value::Kind::list;
+    Value map;
+    map.kind = Value::Kind::map;
+    map.where = value.where;
+    map.keys = {scalar("source"), scalar("outlines"), scalar("file")};
+    if (value.is_list()) {
+      map.items = {scalar("outlines"), value, scalar("")};
+    } else if (value.text == "generated") {
+      map.items = {scalar("generated"), none, scalar("")};
+    } else {
+      map.items = {scalar("file"), none, value};
+    }
+    return map;
+  });
+}
+
+void bind_contact(Specification& keys, Scene& scene) {
+  keys.choice("contact.law", scene.contact.law, {"mean_depth", "area", "potential"}, UsedBy::dem,
+              "normal force: kn A / b, kn A, or kn A b / L^2 with overlap area A, width b, mean diameter L");
+  keys.number("contact.normal_stiffness", scene.contact.normal_stiffness, kPositive,
+              "N/m for mean_depth and potential, N/m^2 for area", UsedBy::dem,
+              "normal stiffness kn; the paper's 2e7 N/m (Table 1) lets particles overlap far too much at 2 to 4 MPa");
+  keys.optional_number("contact.tangential_stiffness", scene.contact.tangential_stiffness, kPositive, "N/m",
+                       UsedBy::dem,
+                       "tangential stiffness kt, with effect friction; auto: from the normal stiffness of the law");
+  keys.number("contact.friction", scene.contact.friction, kNonNegative, "-", UsedBy::dem,
+              "Coulomb coefficient in shear, with effect friction (Table 1)");
+  keys.number("damping.local", scene.damping.local, {0, 1, false, true}, "-", UsedBy::dem,
+              "Cundall local damping coefficient, with effect local_damping");
+  keys.number("time_step.safety", scene.time_step.safety, {0, 1, true, false}, "-", UsedBy::dem,
+              "dt = safety sqrt(m_min / k_max); too large a value is unstable");
+}
+
+void bind_preparation(Specification& keys, PreparationOptions& preparation) {
+  keys.number("preparation.confining_pressure", preparation.confining_pressure, kPositive, "Pa", UsedBy::dem,
+              "isotropic pressure before shear, and lateral stress in shear (the paper: 0.5, 1, 2, 4 MPa)");
+  keys.number("preparation.void_ratio", preparation.void_ratio, {0, 2, true, false}, "-", UsedBy::dem,
+              "target before shear, reached by lowering friction (Table 1: 0.30)");
+  keys.choice(
+      "preparation.definition", preparation.definition, {"e1", "e2", "e4"}, UsedBy::dem,
+      "void ratio meant: ring polygon over e1 solids inside it, e2 the same less overlaps, e4 interior particles");
+  keys.number("preparation.void_ratio_tolerance", preparation.void_ratio_tolerance, kPositive, "-", UsedBy::dem,
+              "how near to the target is near enough");
+  keys.number("preparation.compaction_rate", preparation.compaction_rate, kPositive, "1/s", UsedBy::dem,
+              "strain rate of the affine compaction of the loose assembly");
+  keys.number("preparation.initial_friction", preparation.initial_friction, kNonNegative, "-", UsedBy::dem,
+              "friction coefficient during confinement, before it is lowered");
+  keys.number("preparation.unbalanced_force", preparation.unbalanced_force, {0, 1, true, true}, "-", UsedBy::dem,
+              "at rest: mean force sum of a free particle over mean normal contact force");
+  // The frame itself records the configuration that prepared it, so its name says nothing that a hash should keep.
+  keys.text("preparation.from", preparation.from, "a file name", UsedBy::neither,
+            "start from this prepared frame; relative to the scene's folder (with --set: to the working directory)");
+}
+
+void bind_drives(Specification& keys, ServoOptions& servo, ShearOptions& shear) {
+  keys.number("servo.modulus", servo.modulus, kPositive, "Pa", UsedBy::dem,
+              "stiffness of the assembly that the servo's gains refer to");
+  keys.custom(
+      {"servo.max_rate", "1/s", "largest lateral strain rate; auto: from the pressure and the servo's gains",
+       "auto or a number > 0", UsedBy::dem},
+      [&servo](const Value& value) {
+        const bool scalar = value.is_scalar() && !value.quoted;
+        const auto number = scalar ? parse_number(value.text) : std::nullopt;
+        const bool automatic = scalar && value.text == "auto";
+        if (!automatic && (!number || *number <= 0)) refuse(value, "servo.max_rate", "auto or a number > 0 [1/s]");
+        servo.max_rate = automatic ? 0 : *number;
+      },
+      [&servo](UsedBy) { return servo.max_rate > 0 ? print_number(servo.max_rate) : "auto"; });
+  keys.number("shear.axial_strain", shear.axial_strain, {0, 1, true, true}, "-", UsedBy::dem,
+              "axial strain at which the test ends, 1 - H/H0 (the paper: 0.173)");
+  keys.number("shear.strain_rate", shear.strain_rate, kPositive, "1/s", UsedBy::dem,
+              "axial strain rate; quasi-static while the inertial number stays below 1e-3");
+  keys.number("shear.ramp_strain", shear.ramp_strain, {0, 1, false, true}, "-", UsedBy::dem,
+              "axial strain over which the rate grows from zero");
+  keys.optional_number("shear.frame_interval", shear.frame_interval, {0, 1, true, true}, "-", UsedBy::dem,
+                       "axial strain between two frames without breakage; auto: 0.005");
+  keys.integer("shear.history_interval", shear.history_interval, 1, kMany, "steps", UsedBy::dem,
+               "steps between two rows of the history");
+}
+
+void bind_output(Specification& keys, OutputOptions& output) {
+  // A word or a count: `word` stands for the count 0, and `one` (if any) for 1.
+  const auto count = [&keys](const std::string& path, int& value, const std::string& word, const std::string& one,
+                             const std::string& description) {
+    const std::string expected = word + (one.empty() ? "" : ", " + one) + " or an integer >= 1";
+    keys.custom(
+        {path, "-", description, expected, UsedBy::neither},
+        [=, &value](const Value& given) {
+          const bool scalar = given.is_scalar() && !given.quoted;
+          const auto number = scalar ? parse_integer(given.text) : std::nullopt;
+          if (scalar && given.text == word) {
+            value = 0;
+          } else if (scalar && !one.empty() && given.text == one) {
+            value = 1;
+          } else if (number && *number >= 1 && *number <= kMany) {
+            value = static_cast<int>(*number);
+          } else {
+            refuse(given, path, expected);
+          }
+        },
+        [=, &value](UsedBy) {
+          if (value == 0) return word;
+          return value == 1 && !one.empty() ? one : std::to_string(value);
+        });
+  };
+  count("output.durability", output.durability.interval, "none", "every",
+        "fsync after every file, every N-th, or none; a killed process loses nothing either way, a power cut may");
+  count("output.keep_frames", output.keep_frames, "all", "",
+        "frames that stay on disk: all, or the newest N with the first and the last");
+}
+
+Specification specification(Scene& scene) {
+  Specification keys;
+  keys.custom(
+      {"seed", "-", "seed of the generator: shapes, sizes, places", "an integer in [0, 2^64 - 1]", UsedBy::dem},
+      [&scene](const Value& value) {
+        const auto number = value.is_scalar() && !value.quoted ? parse_unsigned(value.text) : std::nullopt;
+        if (!number) refuse(value, "seed", "an integer in [0, 2^64 - 1], written in digits only");
+        scene.seed = *number;
+      },
+      [&scene](UsedBy) { return std::to_string(scene.seed); });
+  const std::string effects = "a list of friction, local_damping, energy_ledger, breakage";
+  keys.custom(
+      {"effects", "-", "what exists in the run; what is not named costs nothing", effects, UsedBy::both},
+      [&scene, effects](const Value& value) { scene.effects = read_effects(value, effects); },
+      [&scene](UsedBy executable) { return print_effects(scene.effects, executable); });
+  bind_material(keys, scene.material, true);
+  bind_assembly(keys, scene.assembly);
+  bind_contact(keys, scene);
+  bind_preparation(keys, scene.preparation);
+  bind_drives(keys, scene.servo, scene.shear);
+  keys.number("breakage.interval", scene.breakage.interval, {0, 1, true, true}, "-", UsedBy::dem,
+              "axial strain between two breakage analyses, with effect breakage");
+  bind_mesh_nodes(keys, "breakage.nodes", scene.breakage.nodes);
+  bind_particle_breakage(keys, scene.breakage);
+  bind_output(keys, scene.output);
+  return keys;
+}
+
+// Absolute path of a file named by key `path`: relative to the scene's folder, or to the working directory if it came
+// from the command line.
+std::string absolute_name(const Specification& keys, const std::string& path, const std::string& name,
+                          const std::filesystem::path& scene_file) {
+  if (name.empty()) return name;
+  const bool from_command_line = keys.where(path).rfind("--set ", 0) == 0;
+  const std::filesystem::path folder =
+      from_command_line ? std::filesystem::current_path() : std::filesystem::absolute(scene_file).parent_path();
+  return (folder / name).lexically_normal().string();
+}
+
+// Settles where the shapes come from; afterwards `source` is generated or outlines, so that the resolved scene holds
+// all that a run needs and its hash covers the outlines themselves.
+void resolve_shapes(Specification& keys, ShapeOptions& shapes) {
+  const std::string source = "assembly.shapes.source";
+  const std::string file = "assembly.shapes.file";
+  const std::string outlines = "assembly.shapes.outlines";
+  if (!keys.given(source)) {
+    if (!shapes.outlines.empty())
+      shapes.source = "outlines";
+    else if (!shapes.file.empty())
+      shapes.source = "file";
+  }
+  if (shapes.source == "generated" && (!shapes.file.empty() || !shapes.outlines.empty())) {
+    keys.fail({source, file, outlines}, source + ": found \"generated\" although " +
+                                            (shapes.file.empty() ? outlines : file) +
+                                            " is given, expected one or the other");
+  } else if (shapes.source == "outlines" && shapes.outlines.empty()) {
+    keys.fail({outlines, source}, outlines + ": found none, expected at least one outline");
+  } else if (shapes.source == "file") {
+    if (shapes.file.empty()) {
+      keys.fail({source}, file + ": found nothing, expected the name of a file of outlines");
+      return;
+    }
+    try {
+      shapes.outlines = read_outline_file(shapes.file);
+      shapes.source = "outlines";
+    } catch (const Error& error) {
+      keys.fail({file}, file + ": " + error.what());
+    }
+  }
+}
+
+void check_between_keys(Specification& keys, const Scene& scene) {
+  const AssemblyOptions& assembly = scene.assembly;
+  if (assembly.diameter_min > assembly.diameter_max) {
+    keys.fail({"assembly.diameter_min", "assembly.diameter_max"},
+              "assembly.diameter_min: found " + print_number(assembly.diameter_min) +
+                  ", expected at most assembly.diameter_max = " + print_number(assembly.diameter_max) + " [m]");
+  }
+  if (assembly.shapes.corners_min > assembly.shapes.corners_max) {
+    keys.fail({"assembly.shapes.corners_min", "assembly.shapes.corners_max"},
+              "assembly.shapes.corners_min: found " + std::to_string(assembly.shapes.corners_min) +
+                  ", expected at most assembly.shapes.corners_max = " + std::to_string(assembly.shapes.corners_max));
+  }
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) {
+  Scene scene;
+  scene.file = file;
+  Specification keys = specification(scene);
+  keys.read(load_document(file));
+  for (const std::string& assignment : overrides) keys.set(assignment);
+  keys.finish();
+  scene.preparation.from = absolute_name(keys, "preparation.from", scene.preparation.from, file);
+  scene.assembly.shapes.file = absolute_name(keys, "assembly.shapes.file", scene.assembly.shapes.file, file);
+  resolve_shapes(keys, scene.assembly.shapes);
+  check_between_keys(keys, scene);
+  keys.finish();
+  return scene;
+}
+
+std::string to_yaml(const Scene& scene) {
+  Scene copy = scene;
+  return specification(copy).to_yaml("# The resolved scene: every key with its value, [unit] and meaning. SI units.\n");
+}
+
+std::string config_hash(const Scene& scene, UsedBy executable) {
+  Scene copy = scene;
+  return specification(copy).hash(executable);
+}
+
+std::vector<Key> scene_keys() {
+  Scene scene;
+  return specification(scene).keys();
+}
+
+}  // namespace common

@@ -1,0 +1,277 @@
+#include "common/config/specification.hpp"
+
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "common/config/document.hpp"
+#include "common/config/suggestion.hpp"
+#include "common/config/values.hpp"
+#include "common/error.hpp"
+#include "common/io/immutable_file.hpp"
+
+namespace common {
+namespace {
+
+std::string with_unit(const std::string& expected, const std::string& unit) {
+  return unit == "-" ? expected : expected + " [" + unit + "]";
+}
+
+double read_number(const Value& value, const Range& range, const Key& key) {
+  const std::optional<double> number = value.is_scalar() && !value.quoted ? parse_number(value.text) : std::nullopt;
+  if (!number || !contains(range, *number)) refuse(value, key.path, with_unit(key.expected, key.unit));
+  return *number;
+}
+
+bool is_word(const Value& value, std::string_view word) {
+  return value.is_scalar() && !value.quoted && value.text == word;
+}
+
+// Last name of a dotted path, and the path of a name in a section.
+std::string name_of(const std::string& path) {
+  return path.substr(path.rfind('.') + 1);
+}
+std::string below(const std::string& section, const std::string& name) {
+  return section.empty() ? name : section + '.' + name;
+}
+
+}  // namespace
+
+void refuse(const Value& value, const std::string& path, const std::string& expected) {
+  throw bad_input(value.where + ": " + path + ": found " + describe(value) + ", expected " + expected);
+}
+
+void Specification::number(const std::string& path, double& value, Range range, const std::string& unit, UsedBy used_by,
+                           const std::string& description) {
+  const Key key{path, unit, description, describe(range, "a number"), used_by};
+  custom(
+      key, [=, &value](const Value& given) { value = read_number(given, range, key); },
+      [&value](UsedBy) { return print_number(value); });
+}
+
+void Specification::optional_number(const std::string& path, std::optional<double>& value, Range range,
+                                    const std::string& unit, UsedBy used_by, const std::string& description) {
+  const Key key{path, unit, description, "auto or " + describe(range, "a number"), used_by};
+  custom(
+      key,
+      [=, &value](const Value& given) {
+        value = is_word(given, "auto") ? std::nullopt : std::optional(read_number(given, range, key));
+      },
+      [&value](UsedBy) { return value ? print_number(*value) : "auto"; });
+}
+
+void Specification::integer(const std::string& path, int& value, int low, int high, const std::string& unit,
+                            UsedBy used_by, const std::string& description) {
+  const Range range{static_cast<double>(low), static_cast<double>(high)};
+  const Key key{path, unit, description, describe(range, "an integer"), used_by};
+  custom(
+      key,
+      [=, &value](const Value& given) {
+        const auto number = given.is_scalar() && !given.quoted ? parse_integer(given.text) : std::nullopt;
+        if (!number || *number < low || *number > high) {
+          refuse(given, key.path, with_unit(key.expected, unit) + (number ? "" : ", written in digits only"));
+        }
+        value = static_cast<int>(*number);
+      },
+      [&value](UsedBy) { return std::to_string(value); });
+}
+
+void Specification::flag(const std::string& path, bool& value, UsedBy used_by, const std::string& description) {
+  custom(
+      {path, "-", description, "true or false", used_by},
+      [path, &value](const Value& given) {
+        if (!is_word(given, "true") && !is_word(given, "false")) refuse(given, path, "true or false");
+        value = given.text == "true";
+      },
+      [&value](UsedBy) { return value ? "true" : "false"; });
+}
+
+void Specification::text(const std::string& path, std::string& value, const std::string& expected, UsedBy used_by,
+                         const std::string& description) {
+  custom(
+      {path, "-", description, expected, used_by},
+      [=, &value](const Value& given) {
+        if (!given.is_scalar() && !given.is_null()) refuse(given, path, expected);
+        value = given.text;
+      },
+      [&value](UsedBy) { return in_quotes(value); });
+}
+
+void Specification::named(const std::string& path, const std::vector<std::string>& names, std::function<void(int)> set,
+                          std::function<int()> get, UsedBy used_by, const std::string& description) {
+  const std::string expected = "one of " + join(names);
+  custom(
+      {path, "-", description, expected, used_by},
+      [=](const Value& given) {
+        for (std::size_t i = 0; i < names.size(); ++i) {
+          if (given.is_scalar() && given.text == names[i]) return set(static_cast<int>(i));
+        }
+        const std::string near = given.is_scalar() ? nearest_name(given.text, names) : "";
+        refuse(given, path, expected + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+      },
+      [=](UsedBy) { return names[static_cast<std::size_t>(get())]; });
+}
+
+void Specification::custom(Key key, Reader read, Printer print) {
+  bindings_.push_back({std::move(key), std::move(read), std::move(print)});
+}
+
+void Specification::shorthand(const std::string& section, std::function<Value(const Value&)> expand) {
+  shorthands_[section] = std::move(expand);
+}
+
+const Specification::Binding* Specification::find(const std::string& path) const {
+  for (const Binding& binding : bindings_) {
+    if (binding.key.path == path) return &binding;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> Specification::names_in(const std::string& section) const {
+  std::vector<std::string> names;
+  const std::string prefix = section.empty() ? "" : section + '.';
+  for (const Binding& binding : bindings_) {
+    const std::string& path = binding.key.path;
+    if (path.compare(0, prefix.size(), prefix) != 0) continue;
+    const std::string name = path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size());
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return names;
+}
+
+std::string Specification::unknown_key(const std::string& name, const std::string& section) const {
+  const std::vector<std::string> names = names_in(section);
+  std::string text = "unknown key " + in_quotes(name) + (section.empty() ? "" : " in " + section);
+  if (nearest_name(name, names).empty()) {
+    for (const Binding& binding : bindings_) {
+      if (name_of(binding.key.path) == name) return text + "; did you mean \"" + binding.key.path + "\"?";
+    }
+  }
+  return text + suggestion(name, names, "expected one of ");
+}
+
+void Specification::walk(const Value& value, const std::string& path) {
+  if (const Binding* binding = find(path)) {
+    given_[path] = value.where;
+    try {
+      binding->read(value);
+    } catch (const Error& error) {
+      errors_.emplace_back(error.what());
+    }
+    return;
+  }
+  const auto expand = shorthands_.find(path);
+  if (expand != shorthands_.end() && !value.is_map() && !value.is_null()) {
+    return walk(expand->second(value), path);
+  }
+  if (value.is_null() && !path.empty()) return;  // a section whose keys are all commented out
+  if (!value.is_map()) {
+    errors_.push_back(value.where + ": " + (path.empty() ? "" : path + ": ") + "found " + describe(value) +
+                      ", expected a map of keys (" + join(names_in(path)) + ")");
+    return;
+  }
+  std::map<std::string, std::string> seen;
+  for (std::size_t i = 0; i < value.keys.size(); ++i) {
+    const Value& key = value.keys[i];
+    const auto [first, is_new] = seen.emplace(key.text, key.where);
+    const std::string child = below(path, key.text);
+    if (!is_new) {
+      errors_.push_back(key.where + ": duplicate key " + in_quotes(key.text) + (path.empty() ? "" : " in " + path) +
+                        ", first given at " + first->second + "; expected each key once");
+    } else if (key.text.find('.') != std::string::npos || (!find(child) && names_in(child).empty())) {
+      errors_.push_back(key.where + ": " + unknown_key(key.text, path));
+    } else {
+      walk(value.items[i], child);
+    }
+  }
+}
+
+void Specification::read(const Value& document) {
+  document_ = document.where;
+  walk(document, "");
+}
+
+void Specification::set(const std::string& assignment) {
+  const std::string place = "--set " + assignment;
+  const std::size_t equal = assignment.find('=');
+  if (equal == std::string::npos || equal == 0) {
+    errors_.push_back(place + ": expected KEY=VALUE, for example --set seed=2");
+    return;
+  }
+  const std::string path = assignment.substr(0, equal);
+  // Name by name, so that the first unknown one is reported in its section.
+  std::string section;
+  for (std::size_t start = 0; start <= path.size();) {
+    const std::size_t dot = std::min(path.find('.', start), path.size());
+    const std::string name = path.substr(start, dot - start);
+    const std::string child = below(section, name);
+    if (!find(child) && (name.empty() || names_in(child).empty())) {
+      errors_.push_back(place + ": " + unknown_key(name, section));
+      return;
+    }
+    section = child;
+    start = dot + 1;
+  }
+  try {
+    walk(parse_override_value(assignment.substr(equal + 1), place), path);
+  } catch (const Error& error) {
+    errors_.emplace_back(error.what());
+  }
+}
+
+void Specification::fail(const std::vector<std::string>& paths, const std::string& message) {
+  std::string place = document_;
+  for (const std::string& path : paths) {
+    if (given(path)) {
+      place = where(path);
+      break;
+    }
+  }
+  errors_.push_back(place + ": " + message);
+}
+
+void Specification::finish() const {
+  if (errors_.empty()) return;
+  std::string text;
+  for (const std::string& error : errors_) text += (text.empty() ? "" : "\n") + error;
+  throw bad_input(text);
+}
+
+std::string Specification::where(const std::string& path) const {
+  const auto place = given_.find(path);
+  return place == given_.end() ? "" : place->second;
+}
+
+std::vector<Key> Specification::keys() const {
+  std::vector<Key> keys;
+  for (const Binding& binding : bindings_) keys.push_back(binding.key);
+  return keys;
+}
+
+std::string Specification::to_yaml(const std::string& title) const {
+  std::string text = title;
+  std::set<std::string> opened;
+  for (const Binding& binding : bindings_) {
+    const std::string& path = binding.key.path;
+    std::string indent;
+    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+      const std::string section = path.substr(0, dot);
+      if (opened.insert(section).second) text += indent + name_of(section) + ":\n";
+      indent += "  ";
+    }
+    text += indent + name_of(path) + ": " + binding.print(UsedBy::neither) + "  # [" + binding.key.unit + "] " +
+            binding.key.description + "\n";
+  }
+  return text;
+}
+
+std::string Specification::hash(UsedBy executable) const {
+  std::string text;
+  for (const Binding& binding : bindings_) {
+    if (binding.key.used_by != executable && binding.key.used_by != UsedBy::both) continue;
+    text += binding.key.path + ": " + binding.print(executable) + '\n';
+  }
+  return hash_hex(std::as_bytes(std::span(text)));
+}
+
+}  // namespace common
