@@ -1,0 +1,25 @@
+#include "dem/drive/servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dem {
+
+void Servo::update(const ServoGains& gains, double target, double measured, double dt) {
+  const double error = target - measured;
+  const double grown = integral + gains.integral * error * dt;
+  const double wanted = gains.proportional * error + grown;
+  rate = std::clamp(wanted, -gains.max_rate, gains.max_rate);
+  if (rate == wanted) integral = grown;
+}
+
+ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density) {
+  const double wave_time = radius / std::sqrt(options.modulus / density);
+  ServoGains gains{};
+  gains.proportional = 0.3 / (options.modulus * wave_time);
+  gains.integral = gains.proportional / (6 * wave_time);
+  gains.max_rate = options.max_rate > 0 ? options.max_rate : 0.1 * pressure / (options.modulus * wave_time);
+  return gains;
+}
+
+}  // namespace dem

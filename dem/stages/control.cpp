@@ -1,0 +1,129 @@
+#include "dem/stages/control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/error.hpp"
+#include "dem/boundary/ring.hpp"
+#include "dem/measures.hpp"
+
+namespace dem {
+namespace {
+
+// Ball of the ring search, in mean spacings: smaller ones fall into the assembly, larger ones bridge over hollows.
+constexpr double kBallRadius = 1.5;
+
+struct Entry {
+  const char* name;
+  const char* unit;
+  const char* description;
+  double Control::*member;
+};
+
+constexpr Entry kEntries[] = {
+    {"phase_start", "s", "time at which the phase of the run began", &Control::phase_start},
+    {"stretch_x", "-", "stretch of the boundary along x since the start of shear", &Control::stretch_x},
+    {"stretch_y", "-", "stretch of the boundary along y since the start of shear", &Control::stretch_y},
+    {"steps_to_ring", "-", "steps until the boundary ring is found anew", &Control::steps_to_ring},
+    {"steps_to_servo", "-", "steps until the stress is measured for the servo", &Control::steps_to_servo},
+    {"next_frame", "-", "number of the next frame", &Control::next_frame},
+    {"contact_steps", "-", "contacts times steps since the start of shear", &Control::contact_steps},
+    {"momentum_error", "-", "largest relative change of linear momentum at a split", &Control::momentum_error},
+    {"broken", "-", "particles broken so far", &Control::broken},
+    {"solid_area", "m^2", "area of all particles when shear began", &Control::solid_area},
+};
+
+common::Column column(const std::string& name, const char* unit, const char* description, double value) {
+  return {name, unit, description, {value}};
+}
+
+double value_of(const common::Frame& frame, const std::string& name) {
+  for (const common::Column& c : frame.checkpoint) {
+    if (c.name == name && c.values.size() == 1) return c.values[0];
+  }
+  throw common::bad_input(
+      fmt::format("frame {}: dataset checkpoint/{} is missing or not one number; this file is no checkpoint of dem",
+                  frame.frame, name));
+}
+
+std::vector<std::int32_t> ring_of(const Particles& p) {
+  double area = 0;
+  for (const double a : p.area) area += a;
+  // Centres of particles that fill about four fifths of the plane.
+  const double spacing = std::sqrt(1.25 * area / static_cast<double>(p.size()));
+  return find_ring(p.position, kBallRadius * spacing);
+}
+
+}  // namespace
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::compaction: return "compaction";
+    case Phase::relaxation: return "relaxation";
+    case Phase::confinement: return "confinement";
+    case Phase::densification: return "densification";
+    case Phase::hold: return "hold";
+    case Phase::shear: return "shear";
+  }
+  return "";
+}
+
+common::Stage stage_of(Phase phase) {
+  switch (phase) {
+    case Phase::compaction: return common::Stage::compaction;
+    case Phase::relaxation: return common::Stage::relaxation;
+    case Phase::shear: return common::Stage::shear;
+    default: return common::Stage::confinement;
+  }
+}
+
+std::vector<common::Column> to_columns(const Control& control) {
+  std::vector<common::Column> columns;
+  columns.push_back(column("phase", "-", "0 compaction, 1 relaxation, 2 confinement, 3 densification, 4 hold, 5 shear",
+                           static_cast<double>(control.phase)));
+  for (const Entry& e : kEntries) columns.push_back(column(e.name, e.unit, e.description, control.*e.member));
+  const auto add_servo = [&](const std::string& axis, const Servo& servo) {
+    columns.push_back(column("servo_integral_" + axis, "1/s", "integral part of the servo's strain rate", servo.integral));
+    columns.push_back(column("servo_rate_" + axis, "1/s", "strain rate in force, compression positive", servo.rate));
+  };
+  add_servo("x", control.servo_x);
+  add_servo("y", control.servo_y);
+  return columns;
+}
+
+Control read_control(const common::Frame& frame) {
+  Control control;
+  control.phase = static_cast<Phase>(std::clamp(static_cast<int>(value_of(frame, "phase")), 0, 5));
+  for (const Entry& e : kEntries) control.*e.member = value_of(frame, e.name);
+  control.servo_x = {value_of(frame, "servo_integral_x"), value_of(frame, "servo_rate_x")};
+  control.servo_y = {value_of(frame, "servo_integral_y"), value_of(frame, "servo_rate_y")};
+  return control;
+}
+
+void outline_ring(Engine& engine) { engine.edit().ring = ring_of(engine.state().particles); }
+
+void renew_ring(Engine& engine) {
+  State& state = engine.edit();
+  Particles& p = state.particles;
+  const double energy_before = kinetic_energy(p) + elastic_energy(state, engine.constants());
+  state.ring = ring_of(p);
+  std::fill(p.boundary.begin(), p.boundary.end(), std::uint8_t{0});
+  for (const std::int32_t i : state.ring) {
+    p.boundary[i] = 1;
+    p.velocity[i].setZero();
+    p.angular_velocity[i] = 0;
+  }
+  engine.restart();
+  state.energy.boundary_work += kinetic_energy(p) + elastic_energy(state, engine.constants()) - energy_before;
+}
+
+ServoGains sample_gains(const common::Scene& scene, const State& state, double pressure) {
+  const double area = ring_area(state);
+  double mass = 0;
+  for (const double m : state.particles.mass) mass += m;
+  // The ring polygon leaves out the outer halves of the boundary particles; a tenth of density hardly moves a gain.
+  return servo_gains(scene.servo, pressure, std::sqrt(area * 0.3183098861837907), mass / area);
+}
+
+}  // namespace dem

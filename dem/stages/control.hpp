@@ -1,0 +1,49 @@
+// What steers a run besides the particles: stage, servo, stretches, counters. Part of every checkpoint.
+#pragma once
+
+#include <vector>
+
+#include "common/io/frame.hpp"
+#include "dem/drive/servo.hpp"
+#include "dem/engine.hpp"
+
+namespace dem {
+
+/// The steps of a preparation, in order (DESIGN section 2, Preparation), then the test itself.
+enum class Phase { compaction, relaxation, confinement, densification, hold, shear };
+const char* name_of(Phase phase);
+common::Stage stage_of(Phase phase);
+
+struct Control {
+  Phase phase = Phase::compaction;
+  double phase_start = 0;          ///< time at which the phase began [s]
+  Servo servo_x, servo_y;
+  double stretch_x = 1;            ///< of the boundary since the start of shear
+  double stretch_y = 1;
+  double steps_to_ring = 0;        ///< steps until the boundary is looked for again
+  double steps_to_servo = 0;       ///< steps until the stress is measured again
+  double next_frame = 0;           ///< number of the frame to be written next
+  double contact_steps = 0;        ///< contacts evaluated since the start of shear
+  double momentum_error = 0;       ///< largest of all splits
+  double broken = 0;               ///< particles broken so far
+  double solid_area = 0;           ///< of all particles when shear began [m^2]
+
+  double axial_strain() const { return 1 - stretch_y; }
+  double lateral_strain() const { return 1 - stretch_x; }
+};
+
+/// Checkpoint columns of a control and back. `read_control` throws bad_input naming the missing dataset.
+std::vector<common::Column> to_columns(const Control& control);
+Control read_control(const common::Frame& frame);
+
+/// Finds the boundary ring anew and sets the flags. Energy that enters or leaves with particles that change sides
+/// (their kinetic energy, the contacts between boundary particles, which carry no force) is booked as boundary work.
+void renew_ring(Engine& engine);
+
+/// Ring of the present centres without setting any flag (loose assemblies).
+void outline_ring(Engine& engine);
+
+/// Gains of the present sample.
+ServoGains sample_gains(const common::Scene& scene, const State& state, double pressure);
+
+}  // namespace dem

@@ -1,0 +1,115 @@
+#include "dem/stages/prepare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "dem/measures.hpp"
+
+namespace dem {
+namespace {
+
+constexpr double kContactStress = 0.02;      // of the pressure: particles touch
+constexpr double kRelaxed = 0.05;            // unbalanced force at which relaxation ends
+constexpr double kPressureReached = 0.01;    // relative error of both stresses
+constexpr double kPressureHeld = 0.003;
+constexpr int kRingInterval = 50;
+constexpr int kServoInterval = 10;
+constexpr double kFrictionHalving = 0.15;    // [s] in which densification halves the friction
+constexpr double kLowestFriction = 0.002;
+constexpr double kLongestPhase = 20;         // [s] of simulated time
+
+}  // namespace
+
+double void_ratio(const State& state, common::VoidRatioDefinition definition) {
+  const VoidRatios e = void_ratios(state);
+  switch (definition) {
+    case common::VoidRatioDefinition::e1: return e.e1;
+    case common::VoidRatioDefinition::e2: return e.e2;
+    case common::VoidRatioDefinition::e4: break;
+  }
+  return e.e4;
+}
+
+Preparation::Preparation(const common::Scene& scene, Engine& engine, Control& control)
+    : scene_(scene), engine_(engine), control_(control) {}
+
+void Preparation::enter(Phase phase) {
+  control_.phase = phase;
+  control_.phase_start = engine_.state().time;
+  if (phase == Phase::hold) engine_.edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;
+}
+
+double Preparation::target_void_ratio_error() const {
+  return void_ratio(engine_.state(), scene_.preparation.definition) - scene_.preparation.void_ratio;
+}
+
+void Preparation::step() {
+  if (control_.steps_to_ring-- <= 0) {
+    control_.phase == Phase::compaction ? outline_ring(engine_) : renew_ring(engine_);
+    control_.steps_to_ring = kRingInterval;
+  }
+  if (control_.phase == Phase::compaction) {
+    engine_.scale_positions(1 - scene_.preparation.compaction_rate * engine_.state().time_step);
+  }
+  engine_.step({control_.servo_x.rate, control_.servo_y.rate});
+  if (control_.steps_to_servo-- <= 0) {
+    steer();
+    control_.steps_to_servo = kServoInterval - 1;
+  }
+}
+
+// Measures the sample, moves the servos, and decides whether the phase has done its work.
+void Preparation::steer() {
+  const State& state = engine_.state();
+  const double p = scene_.preparation.confining_pressure;
+  const auto stress = mean_stress(state, ring_area(state));
+  const bool late = state.time - control_.phase_start > kLongestPhase;
+
+  if (control_.phase == Phase::compaction) {
+    if (0.5 * (stress[0] + stress[1]) > kContactStress * p) {
+      enter(Phase::relaxation);
+      control_.steps_to_ring = 0;
+    }
+    return;
+  }
+  if (control_.phase == Phase::relaxation) {
+    if (engine_.health().unbalanced_force < kRelaxed || state.time - control_.phase_start > 1) {
+      engine_.edit().friction = scene_.effects.friction ? scene_.preparation.initial_friction : 0;
+      enter(Phase::confinement);
+    }
+    return;
+  }
+
+  const double elapsed = kServoInterval * state.time_step;
+  const ServoGains gains = sample_gains(scene_, state, p);
+  control_.servo_x.update(gains, p, stress[0], elapsed);
+  control_.servo_y.update(gains, p, stress[1], elapsed);
+  const double error = std::max(std::abs(stress[0] / p - 1), std::abs(stress[1] / p - 1));
+
+  if (control_.phase == Phase::confinement) {
+    if ((error < kPressureReached && engine_.health().unbalanced_force < 0.01) || late) enter(Phase::densification);
+  } else if (control_.phase == Phase::densification) {
+    if (target_void_ratio_error() <= 0) {
+      enter(Phase::hold);
+    } else if (state.friction < kLowestFriction) {
+      warning_ = fmt::format("void ratio {:.4f} not reached: {:.4f} at friction {:.3f}; the sample is used as it is",
+                             scene_.preparation.void_ratio,
+                             void_ratio(state, scene_.preparation.definition), state.friction);
+      enter(Phase::hold);
+    } else {
+      engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
+    }
+  } else {
+    const bool rest = engine_.health().unbalanced_force < scene_.preparation.unbalanced_force;
+    if ((error < kPressureHeld && rest) || late) {
+      if (late) {
+        warning_ = fmt::format("rest not reached in {} s: unbalanced force {:.2e}, stress error {:.2e}", kLongestPhase,
+                               engine_.health().unbalanced_force, error);
+      }
+      enter(Phase::shear);
+    }
+  }
+}
+
+}  // namespace dem

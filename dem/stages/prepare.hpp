@@ -1,0 +1,40 @@
+// From a loose random assembly to a sample at rest under isotropic pressure with the wanted void ratio:
+//   compaction     affine, at a constant rate, until the mean stress is 2 % of the pressure
+//   relaxation     boundary at rest, until the unbalanced force has died away
+//   confinement    both directions servo-controlled to the pressure, with the preparation's high friction
+//   densification  friction lowered slowly until the void ratio is met
+//   hold           friction of the test, until pressure and unbalanced force are met
+#pragma once
+
+#include <string>
+
+#include "common/config/scene.hpp"
+#include "dem/stages/control.hpp"
+
+namespace dem {
+
+class Preparation {
+ public:
+  Preparation(const common::Scene& scene, Engine& engine, Control& control);
+
+  /// One time step; phases follow one another. Afterwards control.phase is shear when the sample is ready.
+  void step();
+
+  /// What the user should know of how it ended (void ratio not met, rest not reached); empty if all is well.
+  const std::string& warning() const { return warning_; }
+
+ private:
+  void enter(Phase phase);
+  void steer();
+  double target_void_ratio_error() const;
+
+  const common::Scene& scene_;
+  Engine& engine_;
+  Control& control_;
+  std::string warning_;
+};
+
+/// The scene's void ratio of a state, in the declared definition.
+double void_ratio(const State& state, common::VoidRatioDefinition definition);
+
+}  // namespace dem

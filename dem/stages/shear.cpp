@@ -1,0 +1,76 @@
+#include "dem/stages/shear.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/measures.hpp"
+
+namespace dem {
+namespace {
+
+constexpr int kRingInterval = 500;
+constexpr int kServoInterval = 10;
+constexpr double kStrainRounding = 1e-12;
+
+}  // namespace
+
+Shear::Shear(const common::Scene& scene, Engine& engine, Control& control)
+    : scene_(scene), engine_(engine), control_(control) {}
+
+void Shear::begin(Engine& engine, Control& control) {
+  State& state = engine.edit();
+  state.step = 0;
+  state.time = 0;
+  state.energy = {};
+  std::fill(state.particles.displacement.begin(), state.particles.displacement.end(), Vec2::Zero());
+  control.phase = Phase::shear;
+  control.phase_start = 0;
+  control.stretch_x = control.stretch_y = 1;
+  control.next_frame = control.contact_steps = control.momentum_error = control.broken = 0;
+  control.steps_to_ring = kRingInterval;
+  control.steps_to_servo = 0;
+  control.solid_area = 0;
+  for (const double a : state.particles.area) control.solid_area += a;
+}
+
+// Grows smoothly from zero, so that the lateral stress does not feel a jolt: s^2 (3 - 2 s), mean 1/2.
+double Shear::axial_rate() const {
+  const double rate = scene_.shear.strain_rate;
+  const double ramp = 2 * scene_.shear.ramp_strain / rate;
+  const double time = engine_.state().time;
+  if (time >= ramp) return rate;
+  const double s = time / ramp;
+  return rate * s * s * (3 - 2 * s);
+}
+
+void Shear::step() {
+  if (control_.steps_to_ring-- <= 0) {
+    renew_ring(engine_);
+    control_.steps_to_ring = kRingInterval;
+  }
+  if (control_.steps_to_servo-- <= 0) {
+    const State& state = engine_.state();
+    const double p = scene_.preparation.confining_pressure;
+    const auto stress = mean_stress(state, ring_area(state));
+    control_.servo_x.update(sample_gains(scene_, state, p), p, stress[0], kServoInterval * state.time_step);
+    control_.steps_to_servo = kServoInterval - 1;
+  }
+  const StrainRate rate{control_.servo_x.rate, axial_rate()};
+  control_.stretch_x *= 1 - rate.xx * engine_.state().time_step;
+  control_.stretch_y *= 1 - rate.yy * engine_.state().time_step;
+  engine_.step(rate);
+  control_.contact_steps += static_cast<double>(engine_.state().contacts.size());
+}
+
+std::int64_t Shear::last_frame() const {
+  return static_cast<std::int64_t>(std::ceil(scene_.shear.axial_strain / scene_.frame_interval() - 1e-9));
+}
+
+bool Shear::frame_due() const {
+  const double strain = std::min(control_.next_frame * scene_.frame_interval(), scene_.shear.axial_strain);
+  return control_.axial_strain() >= strain - kStrainRounding;
+}
+
+bool Shear::finished() const { return control_.axial_strain() >= scene_.shear.axial_strain - kStrainRounding; }
+
+}  // namespace dem
