@@ -32,6 +32,7 @@ constexpr Entry kEntries[] = {
     {"momentum_error", "-", "largest relative change of linear momentum at a split", &Control::momentum_error},
     {"broken", "-", "particles broken so far", &Control::broken},
     {"solid_area", "m^2", "area of all particles when shear began", &Control::solid_area},
+    {"energy_at_start", "J", "elastic and kinetic energy when shear began", &Control::energy_at_start},
 };
 
 common::Column column(const std::string& name, const char* unit, const char* description, double value) {

@@ -27,6 +27,7 @@ struct Control {
   double momentum_error = 0;       ///< largest of all splits
   double broken = 0;               ///< particles broken so far
   double solid_area = 0;           ///< of all particles when shear began [m^2]
+  double energy_at_start = 0;      ///< elastic and kinetic, when shear began [J]
 
   double axial_strain() const { return 1 - stretch_y; }
   double lateral_strain() const { return 1 - stretch_x; }

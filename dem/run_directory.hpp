@@ -1,0 +1,44 @@
+// Where the files of a run stand, and which of them is the newest that can be trusted.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/config/scene.hpp"
+#include "common/io/frame.hpp"
+#include "common/io/split.hpp"
+
+namespace dem {
+
+class RunDirectory {
+ public:
+  /// Creates DIR with its folders, or checks that an existing one may be used: empty (but for .lock and run.jsonl)
+  /// unless `resume`. Throws bad_input, io_failure.
+  RunDirectory(std::filesystem::path root, bool resume);
+
+  std::filesystem::path frame(std::int64_t index) const { return numbered("frames", index); }
+  std::filesystem::path split(std::int64_t index) const { return numbered("splits", index); }
+  std::filesystem::path preparation(std::int64_t index) const { return numbered("prepared", index); }
+  /// The prepared sample, as `preparation.from` of other scenes takes it.
+  std::filesystem::path sample() const { return root_ / "prepared" / "sample.h5"; }
+
+  /// Writes case.yaml if it is not there.
+  void write_case(const common::Scene& scene) const;
+
+  /// Newest frame that reads without an error; newer broken ones are passed over. Throws bad_input if it was made with
+  /// another configuration than `config_hash`.
+  std::optional<common::Frame> newest_frame(const std::string& config_hash) const;
+  /// The same for preparation checkpoints; `index` is set to its number.
+  std::optional<common::Frame> newest_preparation(const std::string& config_hash, std::int64_t& index) const;
+  /// Removes all preparation checkpoints but the newest two before `index`.
+  void drop_preparations_before(std::int64_t index) const;
+
+ private:
+  std::filesystem::path numbered(const char* kind, std::int64_t index) const;
+  std::optional<common::Frame> newest(const char* kind, const std::string& config_hash, std::int64_t& index) const;
+
+  std::filesystem::path root_;
+};
+
+}  // namespace dem
