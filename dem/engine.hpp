@@ -11,8 +11,8 @@ namespace dem {
 
 /// Ratios that tell whether an assembly is at rest and its integration sound.
 struct Health {
-  double unbalanced_force = 0;   ///< mean |sum F| of the free particles / mean normal force
-  double sliding_fraction = 0;   ///< contacts at the Coulomb limit / contacts
+  double unbalanced_force = 0;  ///< mean |sum F| of the free particles / mean normal force
+  double sliding_fraction = 0;  ///< contacts at the Coulomb limit / contacts
 };
 
 /// Advances a state. Everything here but the state is either a constant of the scene or recomputable from the state:

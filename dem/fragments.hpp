@@ -8,9 +8,9 @@ namespace dem {
 
 struct SplitReport {
   int broken = 0;
-  double momentum_error = 0;        ///< |change of total linear momentum| / sum of m |v|, rounding only
-  double kinetic_energy_change = 0; ///< [J]
-  double area_error = 0;            ///< |change of total solid area| / total
+  double momentum_error = 0;         ///< |change of total linear momentum| / sum of m |v|, rounding only
+  double kinetic_energy_change = 0;  ///< [J]
+  double area_error = 0;             ///< |change of total solid area| / total
 };
 
 /// Replaces each broken particle of `split` by its two fragments (arrays stay ascending by id). A fragment takes the

@@ -1,7 +1,8 @@
 #include "dem/history.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "common/error.hpp"
 #include "dem/measures.hpp"
@@ -81,10 +82,10 @@ void History::record(const Engine& engine, const Control& control) {
   double solid = 0;
   for (const double a : state.particles.area) solid += a;
   const double mean = 0.5 * (stress[0] + stress[1]);
-  const double rate = std::max(std::abs(control.servo_x.rate),
-                               control.phase == Phase::shear ? scene_.shear.strain_rate : std::abs(control.servo_y.rate));
-  const double inertial =
-      mean > 0 ? rate * engine.constants().length * std::sqrt(scene_.material.density / mean) : 0;
+  const double rate =
+      std::max(std::abs(control.servo_x.rate),
+               control.phase == Phase::shear ? scene_.shear.strain_rate : std::abs(control.servo_y.rate));
+  const double inertial = mean > 0 ? rate * engine.constants().length * std::sqrt(scene_.material.density / mean) : 0;
 
   std::vector<double> row = {
       static_cast<double>(state.step),
@@ -113,10 +114,10 @@ void History::record(const Engine& engine, const Control& control) {
   };
   if (scene_.effects.friction) row.push_back(health.sliding_fraction);
   if (scene_.effects.energy_ledger) {
-    row.insert(row.end(), {kinetic_energy(state.particles), elastic_energy(state, engine.constants()),
-                           state.energy.boundary_work, state.energy.friction, state.energy.damping,
-                           state.energy.contact_law_work, state.energy.released_by_breakage,
-                           energy_residual(engine, control)});
+    row.insert(row.end(),
+               {kinetic_energy(state.particles), elastic_energy(state, engine.constants()), state.energy.boundary_work,
+                state.energy.friction, state.energy.damping, state.energy.contact_law_work,
+                state.energy.released_by_breakage, energy_residual(engine, control)});
   }
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (!std::isfinite(row[i])) {

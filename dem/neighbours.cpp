@@ -22,9 +22,8 @@ void Neighbours::rebuild(const Particles& particles, const std::vector<double>& 
   const auto low = [&](std::int32_t i) { return position_[i].x() - radius[i]; };
   order_.resize(particles.size());
   std::iota(order_.begin(), order_.end(), 0);
-  std::sort(order_.begin(), order_.end(), [&](std::int32_t i, std::int32_t j) {
-    return low(i) != low(j) ? low(i) < low(j) : i < j;
-  });
+  std::sort(order_.begin(), order_.end(),
+            [&](std::int32_t i, std::int32_t j) { return low(i) != low(j) ? low(i) < low(j) : i < j; });
 
   pairs.clear();
   for (std::size_t s = 0; s < order_.size(); ++s) {
@@ -33,10 +32,12 @@ void Neighbours::rebuild(const Particles& particles, const std::vector<double>& 
     for (std::size_t t = s + 1; t < order_.size() && low(order_[t]) <= end; ++t) {
       const std::int32_t j = order_[t];
       const double reach = radius[i] + radius[j] + skin_;
-      if ((position_[j] - position_[i]).squaredNorm() <= reach * reach) pairs.push_back({std::min(i, j), std::max(i, j)});
+      if ((position_[j] - position_[i]).squaredNorm() <= reach * reach)
+        pairs.push_back({std::min(i, j), std::max(i, j)});
     }
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
 }
 
 }  // namespace dem

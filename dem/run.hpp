@@ -30,9 +30,9 @@ struct RunPorts {
 };
 
 enum class RunEnd {
-  finished,     ///< the last frame of the test is written
-  paused,       ///< at a frame: `until_frame`, or a split is needed
-  stopped,      ///< told to stop
+  finished,  ///< the last frame of the test is written
+  paused,    ///< at a frame: `until_frame`, or a split is needed
+  stopped,   ///< told to stop
   interrupted,
 };
 

@@ -1,8 +1,9 @@
 #include "dem/run_directory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
-#include <fmt/format.h>
 #include <span>
 #include <system_error>
 #include <vector>
@@ -53,13 +54,15 @@ RunDirectory::RunDirectory(fs::path root, bool resume) : root_(std::move(root)) 
     for (const auto& entry : fs::directory_iterator(root_, error)) {
       const std::string name = entry.path().filename().string();
       if (name == ".lock" || name == "run.jsonl") continue;
-      throw common::bad_input(fmt::format("{}: not empty (holds {}); give --resume to go on with that run, or name a new directory",
-                                          root_.string(), name));
+      throw common::bad_input(
+          fmt::format("{}: not empty (holds {}); give --resume to go on with that run, or name a new directory",
+                      root_.string(), name));
     }
   }
   for (const char* folder : {"frames", "prepared"}) {
     fs::create_directories(root_ / folder, error);
-    if (error) throw common::io_failure(fmt::format("{}: cannot create: {}", (root_ / folder).string(), error.message()));
+    if (error)
+      throw common::io_failure(fmt::format("{}: cannot create: {}", (root_ / folder).string(), error.message()));
   }
 }
 
@@ -81,9 +84,9 @@ std::optional<common::Frame> RunDirectory::newest(const char* kind, const std::s
     std::optional<common::Frame> frame = read_if_whole(numbered(kind, *n));
     if (!frame) continue;
     if (frame->config_hash != config_hash) {
-      throw common::bad_input(fmt::format(
-          "{}: was made with another configuration; resume with the scene in {}, or name a new directory",
-          numbered(kind, *n).string(), (root_ / "case.yaml").string()));
+      throw common::bad_input(
+          fmt::format("{}: was made with another configuration; resume with the scene in {}, or name a new directory",
+                      numbered(kind, *n).string(), (root_ / "case.yaml").string()));
     }
     index = *n;
     return frame;
@@ -96,7 +99,8 @@ std::optional<common::Frame> RunDirectory::newest_frame(const std::string& confi
   return newest("frames", config_hash, index);
 }
 
-std::optional<common::Frame> RunDirectory::newest_preparation(const std::string& config_hash, std::int64_t& index) const {
+std::optional<common::Frame> RunDirectory::newest_preparation(const std::string& config_hash,
+                                                              std::int64_t& index) const {
   return newest("prepared", config_hash, index);
 }
 

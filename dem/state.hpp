@@ -16,14 +16,14 @@ using common::Vec2;
 /// A contact in force. Indices into the particle arrays, a < b; the list ascends by (a, b).
 struct Contact {
   std::int32_t a = 0, b = 0;
-  Vec2 point = Vec2::Zero();        ///< application point [m], world
-  Vec2 normal = Vec2::Zero();       ///< unit, from a to b
-  double normal_force = 0;          ///< >= 0 [N]
-  double shear_force = 0;           ///< along (-n_y, n_x), on b [N]
-  double shear_displacement = 0;    ///< tangential spring history [m]
-  double overlap_area = 0;          ///< [m^2]
-  double overlap_width = 0;         ///< [m]
-  double elastic_normal = 0;        ///< state function of the normal law [J]
+  Vec2 point = Vec2::Zero();      ///< application point [m], world
+  Vec2 normal = Vec2::Zero();     ///< unit, from a to b
+  double normal_force = 0;        ///< >= 0 [N]
+  double shear_force = 0;         ///< along (-n_y, n_x), on b [N]
+  double shear_displacement = 0;  ///< tangential spring history [m]
+  double overlap_area = 0;        ///< [m^2]
+  double overlap_width = 0;       ///< [m]
+  double elastic_normal = 0;      ///< state function of the normal law [J]
 
   Vec2 force() const { return normal_force * normal + shear_force * common::perpendicular(normal); }
 };
@@ -42,9 +42,9 @@ struct State {
   std::vector<Contact> contacts;
   std::vector<std::int32_t> ring;  ///< indices of the boundary particles in order around the assembly
   std::int64_t step = 0;
-  double time = 0;                 ///< [s]
-  double time_step = 0;            ///< dt [s]
-  double friction = 0;             ///< coefficient in force
+  double time = 0;       ///< [s]
+  double time_step = 0;  ///< dt [s]
+  double friction = 0;   ///< coefficient in force
   std::int64_t next_id = 0;
   EnergySums energy;
 };

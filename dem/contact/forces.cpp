@@ -38,8 +38,7 @@ void book_work(EnergySums& energy, const Contact& before, const Contact& now, co
   }
   if constexpr (kFriction) {
     const double work = -0.5 * (before.shear_force + now.shear_force) * v.tangential * dt;
-    const double stored =
-        0.5 * (now.shear_force * now.shear_force - before.shear_force * before.shear_force) / kt;
+    const double stored = 0.5 * (now.shear_force * now.shear_force - before.shear_force * before.shear_force) / kt;
     energy.friction += work - stored;
   }
 }
@@ -77,7 +76,8 @@ void evaluate(State& state, ContactWork& work, const ContactConstants& constants
   auto before = work.previous.cbegin();
   const auto last = work.previous.cend();
   for (const Pair& pair : work.pairs) {
-    while (before != last && (before->a < pair.a || (before->a == pair.a && before->b < pair.b))) end_contact(*before++);
+    while (before != last && (before->a < pair.a || (before->a == pair.a && before->b < pair.b)))
+      end_contact(*before++);
     const bool known = before != last && before->a == pair.a && before->b == pair.b;
     const Contact* history = known ? &*before++ : nullptr;
 
@@ -132,9 +132,12 @@ ContactKernel kernel_of(const common::Effects& effects) {
 
 ContactKernel select_contact_kernel(common::ContactLaw law, const common::Effects& effects) {
   switch (law) {
-    case common::ContactLaw::mean_depth: return kernel_of<MeanDepthLaw>(effects);
-    case common::ContactLaw::area: return kernel_of<AreaLaw>(effects);
-    case common::ContactLaw::potential: break;
+    case common::ContactLaw::mean_depth:
+      return kernel_of<MeanDepthLaw>(effects);
+    case common::ContactLaw::area:
+      return kernel_of<AreaLaw>(effects);
+    case common::ContactLaw::potential:
+      break;
   }
   return kernel_of<PotentialLaw>(effects);
 }

@@ -1,8 +1,9 @@
 #include "dem/stages/control.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "common/error.hpp"
 #include "dem/boundary/ring.hpp"
@@ -60,22 +61,32 @@ std::vector<std::int32_t> ring_of(const Particles& p) {
 
 const char* name_of(Phase phase) {
   switch (phase) {
-    case Phase::compaction: return "compaction";
-    case Phase::relaxation: return "relaxation";
-    case Phase::confinement: return "confinement";
-    case Phase::densification: return "densification";
-    case Phase::hold: return "hold";
-    case Phase::shear: return "shear";
+    case Phase::compaction:
+      return "compaction";
+    case Phase::relaxation:
+      return "relaxation";
+    case Phase::confinement:
+      return "confinement";
+    case Phase::densification:
+      return "densification";
+    case Phase::hold:
+      return "hold";
+    case Phase::shear:
+      return "shear";
   }
   return "";
 }
 
 common::Stage stage_of(Phase phase) {
   switch (phase) {
-    case Phase::compaction: return common::Stage::compaction;
-    case Phase::relaxation: return common::Stage::relaxation;
-    case Phase::shear: return common::Stage::shear;
-    default: return common::Stage::confinement;
+    case Phase::compaction:
+      return common::Stage::compaction;
+    case Phase::relaxation:
+      return common::Stage::relaxation;
+    case Phase::shear:
+      return common::Stage::shear;
+    default:
+      return common::Stage::confinement;
   }
 }
 
@@ -85,7 +96,8 @@ std::vector<common::Column> to_columns(const Control& control) {
                            static_cast<double>(control.phase)));
   for (const Entry& e : kEntries) columns.push_back(column(e.name, e.unit, e.description, control.*e.member));
   const auto add_servo = [&](const std::string& axis, const Servo& servo) {
-    columns.push_back(column("servo_integral_" + axis, "1/s", "integral part of the servo's strain rate", servo.integral));
+    columns.push_back(
+        column("servo_integral_" + axis, "1/s", "integral part of the servo's strain rate", servo.integral));
     columns.push_back(column("servo_rate_" + axis, "1/s", "strain rate in force, compression positive", servo.rate));
   };
   add_servo("x", control.servo_x);
@@ -102,7 +114,9 @@ Control read_control(const common::Frame& frame) {
   return control;
 }
 
-void outline_ring(Engine& engine) { engine.edit().ring = ring_of(engine.state().particles); }
+void outline_ring(Engine& engine) {
+  engine.edit().ring = ring_of(engine.state().particles);
+}
 
 void renew_ring(Engine& engine) {
   State& state = engine.edit();

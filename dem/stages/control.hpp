@@ -16,18 +16,18 @@ common::Stage stage_of(Phase phase);
 
 struct Control {
   Phase phase = Phase::compaction;
-  double phase_start = 0;          ///< time at which the phase began [s]
+  double phase_start = 0;  ///< time at which the phase began [s]
   Servo servo_x, servo_y;
-  double stretch_x = 1;            ///< of the boundary since the start of shear
+  double stretch_x = 1;  ///< of the boundary since the start of shear
   double stretch_y = 1;
-  double steps_to_ring = 0;        ///< steps until the boundary is looked for again
-  double steps_to_servo = 0;       ///< steps until the stress is measured again
-  double next_frame = 0;           ///< number of the frame to be written next
-  double contact_steps = 0;        ///< contacts evaluated since the start of shear
-  double momentum_error = 0;       ///< largest of all splits
-  double broken = 0;               ///< particles broken so far
-  double solid_area = 0;           ///< of all particles when shear began [m^2]
-  double energy_at_start = 0;      ///< elastic and kinetic, when shear began [J]
+  double steps_to_ring = 0;    ///< steps until the boundary is looked for again
+  double steps_to_servo = 0;   ///< steps until the stress is measured again
+  double next_frame = 0;       ///< number of the frame to be written next
+  double contact_steps = 0;    ///< contacts evaluated since the start of shear
+  double momentum_error = 0;   ///< largest of all splits
+  double broken = 0;           ///< particles broken so far
+  double solid_area = 0;       ///< of all particles when shear began [m^2]
+  double energy_at_start = 0;  ///< elastic and kinetic, when shear began [J]
 
   double axial_strain() const { return 1 - stretch_y; }
   double lateral_strain() const { return 1 - stretch_x; }

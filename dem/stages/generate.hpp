@@ -8,8 +8,8 @@
 namespace dem {
 
 /// The scene's shape types: outlines scaled to diameter 1 (longest distance between two vertices), centroid at the
-/// origin, counter-clockwise. Generated ones come from `random`. Throws bad_input for a non-convex or degenerate outline,
-/// naming it.
+/// origin, counter-clockwise. Generated ones come from `random`. Throws bad_input for a non-convex or degenerate
+/// outline, naming it.
 std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, const std::filesystem::path& scene_file,
                                       common::Random& random);
 

@@ -1,32 +1,36 @@
 #include "dem/stages/prepare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "dem/measures.hpp"
 
 namespace dem {
 namespace {
 
-constexpr double kContactStress = 0.02;      // of the pressure: particles touch
-constexpr double kRelaxed = 0.05;            // unbalanced force at which relaxation ends
-constexpr double kPressureReached = 0.01;    // relative error of both stresses
+constexpr double kContactStress = 0.02;    // of the pressure: particles touch
+constexpr double kRelaxed = 0.05;          // unbalanced force at which relaxation ends
+constexpr double kPressureReached = 0.01;  // relative error of both stresses
 constexpr double kPressureHeld = 0.003;
 constexpr int kRingInterval = 50;
 constexpr int kServoInterval = 10;
-constexpr double kFrictionHalving = 0.15;    // [s] in which densification halves the friction
+constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves the friction
 constexpr double kLowestFriction = 0.002;
-constexpr double kLongestPhase = 20;         // [s] of simulated time
+constexpr double kLongestPhase = 20;  // [s] of simulated time
 
 }  // namespace
 
 double void_ratio(const State& state, common::VoidRatioDefinition definition) {
   const VoidRatios e = void_ratios(state);
   switch (definition) {
-    case common::VoidRatioDefinition::e1: return e.e1;
-    case common::VoidRatioDefinition::e2: return e.e2;
-    case common::VoidRatioDefinition::e4: break;
+    case common::VoidRatioDefinition::e1:
+      return e.e1;
+    case common::VoidRatioDefinition::e2:
+      return e.e2;
+    case common::VoidRatioDefinition::e4:
+      break;
   }
   return e.e4;
 }
@@ -93,9 +97,9 @@ void Preparation::steer() {
     if (target_void_ratio_error() <= 0) {
       enter(Phase::hold);
     } else if (state.friction < kLowestFriction) {
-      warning_ = fmt::format("void ratio {:.4f} not reached: {:.4f} at friction {:.3f}; the sample is used as it is",
-                             scene_.preparation.void_ratio,
-                             void_ratio(state, scene_.preparation.definition), state.friction);
+      warning_ =
+          fmt::format("void ratio {:.4f} not reached: {:.4f} at friction {:.3f}; the sample is used as it is",
+                      scene_.preparation.void_ratio, void_ratio(state, scene_.preparation.definition), state.friction);
       enter(Phase::hold);
     } else {
       engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
