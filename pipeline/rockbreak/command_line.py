@@ -1,0 +1,104 @@
+"""`pipeline/run` and `pipeline/report`: arguments, messages, exit codes."""
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from .driver import Options, drive
+from .errors import BAD_INPUT, Interrupted, RockbreakError
+from .ledger import Ledger
+from .progress import make_progress
+from .results import Results
+from .run_directory import RunDirectory
+from .summary import wall_seconds, write_summary
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        self.print_usage(sys.stderr)
+        self.exit(BAD_INPUT, f"{self.prog}: {message}\n")
+
+
+def positive(text):
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"found {text}, expected a number of at least 1")
+    return number
+
+
+def guarded(program, work):
+    """Exit code of `work`; what goes wrong becomes a message for people."""
+    try:
+        work()
+    except RockbreakError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return error.code
+    except Interrupted as interrupt:
+        print(f"{program}: interrupted; go on with --resume", file=sys.stderr)
+        return interrupt.code
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def run(arguments=None):
+    parser = Parser(prog="pipeline/run", description="The coupled DEM + XFEM loop: runs a scene, summarizes and "
+                    "reports it. The path of the report is all that it writes to stdout.")
+    parser.add_argument("case", type=Path, help="scene, for example configs/demo.yaml")
+    parser.add_argument("--out", type=Path, required=True, help="run directory")
+    parser.add_argument("--mode", choices=("resident", "oneshot"), default="resident",
+                        help="two processes that stay (default), or one per frame and split; the results are equal")
+    parser.add_argument("--resume", action="store_true", help="go on from the newest valid frame in --out")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
+                        help="override a key of the scene, for example --set seed=2")
+    parser.add_argument("--threads", type=positive, help="threads of dem and of xfem")
+    parser.add_argument("--no-report", action="store_true", help="write summary.json only")
+    options = parser.parse_args(arguments)
+
+    def work():
+        directory = drive(Options(options.case, options.out, options.mode, options.resume, options.overrides,
+                                  options.threads), make_progress())
+        finished = directory.report_file if not options.no_report else directory.summary_file
+        newest_frame = directory.frame_file(directory.frame_numbers()[-1])
+        if not finished.exists() or finished.stat().st_mtime < newest_frame.stat().st_mtime:
+            conclude(directory, with_report=not options.no_report)
+        print(finished)
+
+    return guarded(parser.prog, work)
+
+
+def conclude(directory, with_report):
+    """Summary and report of one finished run; the time that the report took goes into both ledger and summary."""
+    results = Results(directory)
+    write_summary(directory, results.summary)
+    if not with_report:
+        return
+    from .report import write_report  # matplotlib is slow to load: only where figures are made
+    begin = time.perf_counter()
+    write_report([results], directory.report_file)
+    with Ledger(directory.ledger_file) as ledger:
+        ledger.write("report", path=directory.report_file.name,
+                     seconds={"report": round(time.perf_counter() - begin, 3)})
+    results.summary["wall_seconds"] = wall_seconds(results.ledger())
+    write_summary(directory, results.summary)
+
+
+def report(arguments=None):
+    parser = Parser(prog="pipeline/report", description="Figures, tables and one self-contained report.html of a run; "
+                    "of several runs, a comparison. The path of the report is all that it writes to stdout.")
+    parser.add_argument("directories", type=Path, nargs="+", metavar="DIR", help="run directories")
+    parser.add_argument("--out", type=Path, help="file to write (default: report.html in DIR; comparison.html in the "
+                        "first DIR if there are several)")
+    options = parser.parse_args(arguments)
+
+    def work():
+        from .report import write_report
+        runs = [Results(RunDirectory(path)) for path in options.directories]
+        for one in runs:
+            write_summary(one.directory, one.summary)
+        first = runs[0].directory
+        target = options.out or (first.report_file if len(runs) == 1 else first.path / "comparison.html")
+        write_report(runs, target)
+        print(target)
+
+    return guarded(parser.prog, work)

@@ -1,0 +1,22 @@
+"""The one error type of the Python side, and the exit codes (the same as those of the executables)."""
+
+BAD_INPUT = 2
+NUMERICAL_FAILURE = 3
+IO_FAILURE = 4
+
+
+class RockbreakError(Exception):
+    """An error whose message tells the user where it is, what was found and what was expected."""
+
+    def __init__(self, code, message):
+        super().__init__(message)
+        self.code = code
+
+
+class Interrupted(Exception):
+    """A signal asked the driver to end; the exit code is 128 + the signal's number."""
+
+    def __init__(self, signum):
+        super().__init__(f"signal {signum}")
+        self.signum = signum
+        self.code = 128 + signum

@@ -1,0 +1,76 @@
+"""run.jsonl: one JSON object per line and event, appended and flushed at once.
+
+Events are `start`, `frame`, `split`, `warning`, `end` and `report`; each has `event` and `time` (Unix seconds).
+"""
+import json
+import threading
+import time
+
+
+class Ledger:
+    """Appends events. A line that a killed run left half written is cut off before the first append."""
+
+    def __init__(self, path):
+        self.path = path
+        _drop_half_line(path)
+        self._file = open(path, "a", encoding="utf-8")
+        self._lock = threading.Lock()  # children's warnings arrive on threads of their own
+
+    def write(self, event, **fields):
+        line = json.dumps({"event": event, "time": round(time.time(), 3), **fields}) + "\n"
+        with self._lock:
+            self._file.write(line)
+            self._file.flush()
+
+    def close(self):
+        self._file.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def _drop_half_line(path):
+    try:
+        with open(path, "rb+") as file:
+            content = file.read()
+            if content and not content.endswith(b"\n"):
+                file.truncate(content.rfind(b"\n") + 1)
+    except FileNotFoundError:
+        pass
+
+
+def read_ledger(path):
+    """All complete events in order; a truncated last line is left out, a missing file gives none."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return []
+    events = []
+    lines = text.split("\n")
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            events.append(json.loads(line))
+        except json.JSONDecodeError as error:
+            if number == len(lines):
+                break
+            raise ValueError(f"{path}:{number}: not a JSON object: {error}") from error
+    return events
+
+
+def seconds_per_phase(events):
+    """Wall seconds of dem, xfem and handover, summed over the whole history of a run, resumptions included.
+
+    A frame or split that was made again after an interruption counts each time: that time was spent.
+    """
+    seconds = {"dem": 0.0, "xfem": 0.0, "handover": 0.0, "report": 0.0}
+    for event in events:
+        for phase, value in event.get("seconds", {}).items():
+            if phase in seconds:
+                seconds[phase] += value
+    seconds["total"] = sum(seconds.values())
+    return seconds
