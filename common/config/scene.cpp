@@ -77,8 +77,8 @@ void bind_assembly(Specification& keys, AssemblyOptions& assembly) {
   keys.integer("assembly.shapes.corners_min", shapes.corners_min, 3, 32, "-", UsedBy::dem,
                "generated: fewest corners (the paper's figures show 5 to 8)");
   keys.integer("assembly.shapes.corners_max", shapes.corners_max, 3, 32, "-", UsedBy::dem, "generated: most corners");
-  keys.number("assembly.shapes.roughness", shapes.roughness, {0, 1, false, true}, "-", UsedBy::dem,
-              "generated: relative scatter of the corner angles; 0: regular polygons");
+  keys.number("assembly.shapes.roughness", shapes.roughness, {0, 0.45, false, false}, "-", UsedBy::dem,
+              "generated: scatter of the corner angles, in spacings; 0: evenly spaced");
   keys.number("assembly.shapes.aspect", shapes.aspect, {0, 1, true, false}, "-", UsedBy::dem,
               "generated: smallest ratio of width to length drawn; 1: equant");
   keys.custom(

@@ -36,8 +36,8 @@ struct ShapeOptions {
   std::string source = "generated";  ///< generated | outlines (read_scene turns `file` into outlines)
   int types = 12;                    ///< number of generated shape types
   int corners_min = 5, corners_max = 8;
-  double roughness = 0.25;        ///< 0: regular polygons; relative scatter of corner angles
-  double aspect = 1.0;            ///< smallest ratio of width to length drawn, (0, 1]
+  double roughness = 0.4;         ///< scatter of corner angles, in spacings, [0, 0.45]; 0: evenly spaced
+  double aspect = 0.7;            ///< smallest ratio of width to length drawn, (0, 1]
   std::vector<Polygon> outlines;  ///< source outlines: each at least 3 points, any scale
   std::string file;  ///< where the outlines were read: CSV (type,x,y) or YAML; absolute; empty: from nowhere
 };

@@ -1,0 +1,218 @@
+#include "dem/stages/generate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace dem {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586;
+/// Steps of this size (modulo 1) fill the unit interval evenly, whatever their number.
+constexpr double kGoldenFraction = 0.6180339887498949;
+/// Share of the circle that solids fill in the first attempt; random placement jams a little above it.
+constexpr double kFirstSolidFraction = 0.5;
+constexpr int kTrials = 1000;
+constexpr double kGrowth = 1.02;
+
+/// Diameter 1, centroid at the origin, counter-clockwise.
+Polygon normalized(Polygon outline, const std::string& name) {
+  if (outline.size() >= 3 && common::area(outline) < 0) std::reverse(outline.begin(), outline.end());
+  if (const std::string defect = common::outline_defect(outline); !defect.empty()) {
+    throw common::bad_input(fmt::format("{}: {}", name, defect));
+  }
+  const Vec2 center = common::centroid(outline);
+  const double diameter = common::diameter(outline);
+  for (Vec2& vertex : outline) vertex = (vertex - center) / diameter;
+  return outline;
+}
+
+std::vector<Polygon> draw_shape_types(const common::ShapeOptions& options, common::Random& random) {
+  const auto require = [](bool good, const char* key, const std::string& found, const char* expected) {
+    if (!good) {
+      throw common::bad_input(fmt::format("assembly.shapes.{}: found {}, expected {}", key, found, expected));
+    }
+  };
+  require(options.types >= 1, "types", fmt::format("{}", options.types), "at least 1");
+  require(options.corners_min >= 3 && options.corners_min <= options.corners_max && options.corners_max <= 32,
+          "corners_min, corners_max", fmt::format("{} and {}", options.corners_min, options.corners_max),
+          "3 <= corners_min <= corners_max <= 32");
+  require(options.roughness >= 0 && options.roughness <= 0.45, "roughness", fmt::format("{}", options.roughness),
+          "a number in [0, 0.45]");
+  require(options.aspect > 0 && options.aspect <= 1, "aspect", fmt::format("{}", options.aspect), "a number in (0, 1]");
+
+  std::vector<Polygon> types;
+  double spread = random.uniform();
+  for (int k = 0; k < options.types; ++k) {
+    const int corners = options.corners_min + k % (options.corners_max - options.corners_min + 1);
+    spread += kGoldenFraction;
+    if (spread >= 1) spread -= 1;
+    const double axes = options.aspect + (1 - options.aspect) * spread;
+    const double phase = random.uniform(0, kTwoPi);
+    Polygon outline;
+    for (int i = 0; i < corners; ++i) {
+      const double moved = i + options.roughness * random.uniform(-1, 1);
+      const common::SinCos at = common::sin_cos(phase + kTwoPi * moved / corners);
+      outline.push_back(Vec2(at.cos, axes * at.sin));
+    }
+    types.push_back(normalized(std::move(outline), fmt::format("generated shape type {}", k)));
+  }
+  return types;
+}
+
+/// True if an edge of `a` has all of `b` on its outer side.
+bool has_separating_edge(PolygonView a, PolygonView b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Vec2& start = a[i];
+    const Vec2 edge = a[i + 1 < a.size() ? i + 1 : 0] - start;
+    if (std::all_of(b.begin(), b.end(), [&](const Vec2& p) { return common::cross(edge, p - start) < 0; })) return true;
+  }
+  return false;
+}
+
+/// Polygons by random trial in a circle around the origin.
+class Placement {
+ public:
+  Placement(double radius, double largest_bound)
+      : radius_(radius), cell_(2 * largest_bound), columns_(static_cast<int>(2 * radius / cell_) + 1) {
+    cells_.resize(static_cast<std::size_t>(columns_) * columns_);
+  }
+
+  /// `outline`: turned, centroid at the origin, within `bound` of it. Where it found room, if it did.
+  std::optional<Vec2> place(const Polygon& outline, double bound, common::Random& random) {
+    const double reach = radius_ - bound;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const double x = random.uniform(-reach, reach);
+      const double y = random.uniform(-reach, reach);
+      const Vec2 at(x, y);
+      if (at.squaredNorm() > reach * reach || !is_free(outline, at, bound)) continue;
+      Polygon world = outline;
+      for (Vec2& vertex : world) vertex += at;
+      cells_[cell_of(at.y()) * columns_ + cell_of(at.x())].push_back(static_cast<int>(placed_.size()));
+      placed_.push_back({std::move(world), at, bound});
+      return at;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Placed {
+    Polygon outline;
+    Vec2 at;
+    double bound;
+  };
+
+  int cell_of(double coordinate) const {
+    return std::clamp(static_cast<int>((coordinate + radius_) / cell_), 0, columns_ - 1);
+  }
+
+  bool is_free(const Polygon& outline, const Vec2& at, double bound) const {
+    Polygon world;
+    const int column = cell_of(at.x());
+    const int row = cell_of(at.y());
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, columns_ - 1); ++r) {
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns_ - 1); ++c) {
+        for (const int k : cells_[static_cast<std::size_t>(r) * columns_ + c]) {
+          const Placed& other = placed_[static_cast<std::size_t>(k)];
+          const double touch = bound + other.bound;
+          if ((other.at - at).squaredNorm() > touch * touch) continue;
+          if (world.empty()) {
+            world = outline;
+            for (Vec2& vertex : world) vertex += at;
+          }
+          if (!has_separating_edge(world, other.outline) && !has_separating_edge(other.outline, world)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  double radius_;
+  double cell_;
+  int columns_;
+  std::vector<std::vector<int>> cells_;
+  std::vector<Placed> placed_;
+};
+
+void append(Particles& particles, const Polygon& type, std::int32_t type_index, double diameter, double angle,
+            double density) {
+  const auto id = static_cast<std::int64_t>(particles.size());
+  Polygon body = type;
+  for (Vec2& vertex : body) vertex *= diameter;
+  const double area = common::area(body);
+  particles.id.push_back(id);
+  particles.parent.push_back(-1);
+  particles.root.push_back(id);
+  particles.generation.push_back(0);
+  particles.type.push_back(type_index);
+  particles.position.push_back(Vec2::Zero());
+  particles.velocity.push_back(Vec2::Zero());
+  particles.displacement.push_back(Vec2::Zero());
+  particles.angle.push_back(angle);
+  particles.angular_velocity.push_back(0);
+  particles.mass.push_back(density * area);
+  particles.inertia.push_back(density * common::polar_moment(body));
+  particles.area.push_back(area);
+  particles.boundary.push_back(0);
+  particles.vertices.insert(particles.vertices.end(), body.begin(), body.end());
+  particles.vertex_offset.push_back(static_cast<std::int64_t>(particles.vertices.size()));
+}
+
+}  // namespace
+
+std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, common::Random& random) {
+  if (options.source == "generated") return draw_shape_types(options, random);
+  std::vector<Polygon> outlines = options.outlines;
+  if (outlines.empty()) throw common::bad_input("assembly.shapes.outlines: no outline found, at least one expected");
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    outlines[k] = normalized(std::move(outlines[k]), fmt::format("assembly.shapes.outlines: outline {} (from 0)", k));
+  }
+  return outlines;
+}
+
+Particles generate_assembly(const common::AssemblyOptions& options, const std::filesystem::path&, double density,
+                            std::uint64_t seed) {
+  common::Random random(seed);
+  const std::vector<Polygon> types = make_shape_types(options.shapes, random);
+  Particles particles;
+  for (int i = 0; i < options.particles; ++i) {
+    const std::uint64_t type = random.index(types.size());
+    const double diameter = random.uniform(options.diameter_min, options.diameter_max);
+    const double angle = random.uniform(0, kTwoPi);
+    append(particles, types[type], static_cast<std::int32_t>(type), diameter, angle, density);
+  }
+
+  std::vector<Polygon> turned(particles.size());
+  std::vector<double> bound(particles.size());
+  double solids = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const common::Rotation rotation(particles.angle[i]);
+    for (const Vec2& vertex : particles.outline(i)) turned[i].push_back(rotation * vertex);
+    bound[i] = common::radius_about(particles.outline(i), Vec2::Zero());
+    solids += particles.area[i];
+    largest = std::max(largest, bound[i]);
+  }
+  std::vector<std::size_t> order(particles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return bound[l] > bound[r]; });
+
+  for (double radius = std::max(std::sqrt(2 * solids / (kTwoPi * kFirstSolidFraction)), 1.01 * largest);;
+       radius *= kGrowth) {
+    Placement placement(radius, largest);
+    const bool all = std::all_of(order.begin(), order.end(), [&](std::size_t i) {
+      const std::optional<Vec2> at = placement.place(turned[i], bound[i], random);
+      if (at) particles.position[i] = *at;
+      return at.has_value();
+    });
+    if (all) return particles;
+  }
+}
+
+}  // namespace dem

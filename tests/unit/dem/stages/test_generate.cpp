@@ -1,0 +1,155 @@
+// Oracles: the definition of each property (diameter, area, no overlap by common::overlap).
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <functional>
+
+#include "common/error.hpp"
+#include "common/geometry/overlap.hpp"
+#include "dem/stages/generate.hpp"
+
+using common::Polygon;
+using common::Vec2;
+
+namespace {
+
+common::AssemblyOptions assembly(int particles) {
+  common::AssemblyOptions options;
+  options.particles = particles;
+  return options;
+}
+
+Polygon world(const dem::Particles& particles, std::size_t i) {
+  Polygon outline;
+  const common::Rotation turn(particles.angle[i]);
+  for (const Vec2& v : particles.outline(i)) outline.push_back(particles.position[i] + turn * v);
+  return outline;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const common::Error& error) {
+    CHECK(error.code() == common::ExitCode::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("generated shape types have the wanted corners, diameter 1 and their centroid at the origin") {
+  common::ShapeOptions options;
+  double ratio = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    common::Random random(seed);
+    const auto types = dem::make_shape_types(options, random);
+    REQUIRE(types.size() == 12);
+    for (std::size_t k = 0; k < types.size(); ++k) {
+      CHECK(types[k].size() == 5 + k % 4);
+      CHECK(common::outline_defect(types[k]).empty());
+      CHECK(common::diameter(types[k]) == Approx(1).epsilon(1e-14));
+      CHECK(common::centroid(types[k]).norm() < 1e-14);
+      ratio += common::area(types[k]) / (3.141592653589793 / 4);
+      ++count;
+    }
+  }
+  CHECK(ratio / count == Approx(0.70).margin(0.02));
+}
+
+TEST_CASE("without roughness and elongation the types are regular polygons") {
+  common::ShapeOptions options;
+  options.roughness = 0;
+  options.aspect = 1;
+  options.corners_min = options.corners_max = 6;
+  options.types = 1;
+  common::Random random(1);
+  const auto types = dem::make_shape_types(options, random);
+  CHECK(common::area(types[0]) == Approx(6 * std::sqrt(3.0) / 4 / 4));  // hexagon of side 1/2
+}
+
+TEST_CASE("an assembly is without overlap, fills half of its circle and has the diameters asked for") {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const auto particles = dem::generate_assembly(assembly(300), {}, 2500, seed);
+    REQUIRE(particles.size() == 300);
+    double solids = 0, reach = 0, least = 1, most = 0, mean = 0;
+    std::vector<Polygon> outlines;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      outlines.push_back(world(particles, i));
+      const double diameter = common::diameter(outlines[i]);
+      least = std::min(least, diameter);
+      most = std::max(most, diameter);
+      mean += diameter / 300;
+      solids += particles.area[i];
+      reach = std::max(reach, common::radius_about(outlines[i], Vec2::Zero()));
+      CHECK(particles.area[i] == Approx(common::area(outlines[i])).epsilon(1e-13));
+      CHECK(particles.mass[i] == 2500 * particles.area[i]);
+      CHECK(particles.inertia[i] == Approx(2500 * common::polar_moment(outlines[i])).epsilon(1e-12));
+      CHECK(particles.id[i] == static_cast<std::int64_t>(i));
+    }
+    CHECK(least >= 0.37 * (1 - 1e-12));
+    CHECK(most <= 0.57 * (1 + 1e-12));
+    CHECK(mean == Approx(0.47).margin(0.012));  // 3.5 standard errors of a uniform mean
+    CHECK(solids / (3.141592653589793 * reach * reach) > 0.45);
+    double overlap = 0;
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) overlap += common::overlap(outlines[i], outlines[j]).area;
+    }
+    CHECK(overlap == 0);
+  }
+}
+
+TEST_CASE("an assembly is a function of its seed") {
+  const auto same = [](const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0;
+  };
+  const auto first = dem::generate_assembly(assembly(100), {}, 2500, 5);
+  const auto again = dem::generate_assembly(assembly(100), {}, 2500, 5);
+  const auto other = dem::generate_assembly(assembly(100), {}, 2500, 6);
+  CHECK(same(first.position, again.position));
+  CHECK(same(first.vertices, again.vertices));
+  CHECK(first.angle == again.angle);
+  CHECK_FALSE(same(first.position, other.position));
+}
+
+TEST_CASE("one particle, equal sizes and sizes of 10 to 1 can be placed") {
+  CHECK(dem::generate_assembly(assembly(1), {}, 2500, 1).size() == 1);
+  auto options = assembly(200);
+  options.diameter_min = options.diameter_max = 0.5;
+  CHECK(dem::generate_assembly(options, {}, 2500, 1).size() == 200);
+  options.diameter_min = 0.05;
+  CHECK(dem::generate_assembly(options, {}, 2500, 1).size() == 200);
+}
+
+TEST_CASE("given outlines are scaled, centred and turned counter-clockwise") {
+  common::ShapeOptions options;
+  options.source = "outlines";
+  options.outlines = {{Vec2(7, 0), Vec2(9, 0), Vec2(9, 2), Vec2(7, 2)}, {Vec2(0, 0), Vec2(0, 1), Vec2(1, 0)}};
+  common::Random random(1);
+  const auto types = dem::make_shape_types(options, random);
+  REQUIRE(types.size() == 2);
+  CHECK(common::area(types[0]) == Approx(0.5));
+  CHECK(common::area(types[1]) == Approx(0.25));
+  for (const Polygon& type : types) CHECK(common::centroid(type).norm() < 1e-15);
+}
+
+TEST_CASE("bad shape options are refused by name") {
+  common::ShapeOptions options;
+  options.source = "outlines";
+  options.outlines = {{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, {Vec2(0, 0), Vec2(2, 0), Vec2(0.1, 0.1), Vec2(0, 2)}};
+  const auto make = [&] {
+    common::Random random(1);
+    dem::make_shape_types(options, random);
+  };
+  using Catch::Matchers::Contains;
+  CHECK_THAT(message_of(make), Contains("outline 1") && Contains("convex"));
+  options.outlines = {};
+  CHECK_THAT(message_of(make), Contains("no outline"));
+  options.source = "generated";
+  options.corners_min = 9;
+  CHECK_THAT(message_of(make), Contains("corners_min"));
+  options.corners_min = 5;
+  options.roughness = 0.5;
+  CHECK_THAT(message_of(make), Contains("roughness") && Contains("0.45"));
+}
