@@ -32,38 +32,43 @@ struct Line {
   double height(const Point& p) const { return direction.x * (p.y - start.y) - direction.y * (p.x - start.x); }
 };
 
-Line edge_line(PolygonView polygon, std::size_t i, const Vec2& origin) {
-  const Vec2& p = polygon[i];
-  const Vec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-  return {{p.x() - origin.x(), p.y() - origin.y()}, {q.x() - p.x(), q.y() - p.y()}};
+/// Edge i of a polygon of n vertices. Its end has height exactly zero, so that an edge shared bit for bit is not cut.
+Line edge_line(const Point* vertex, int n, int i) {
+  const Point& p = vertex[i];
+  const Point& q = vertex[i + 1 < n ? i + 1 : 0];
+  return {p, {q.x - p.x, q.y - p.y}};
 }
 
-Point mean_vertex(PolygonView polygon, const Vec2& origin) {
+/// Writes the polygon relative to `origin`; returns the mean of its vertices.
+Point shift(PolygonView polygon, const Vec2& origin, Point* vertex) {
   Point sum{0, 0};
+  int n = 0;
   for (const Vec2& p : polygon) {
-    sum.x += p.x() - origin.x();
-    sum.y += p.y() - origin.y();
+    vertex[n] = {p.x() - origin.x(), p.y() - origin.y()};
+    sum.x += vertex[n].x;
+    sum.y += vertex[n].y;
+    ++n;
   }
-  const double scale = 1.0 / static_cast<double>(polygon.size());
+  const double scale = 1.0 / n;
   return {sum.x * scale, sum.y * scale};
 }
 
-/// The edge of `polygon` that has `point` furthest on its outer side, long edges preferred.
-std::size_t facing_edge(PolygonView polygon, const Point& point, const Vec2& origin) {
-  std::size_t best = 0;
-  double lowest = edge_line(polygon, 0, origin).height(point);
-  for (std::size_t i = 1; i < polygon.size(); ++i) {
-    const double height = edge_line(polygon, i, origin).height(point);
+/// The edge that has `point` furthest on its outer side, long edges preferred.
+int facing_edge(const Point* vertex, int n, const Point& point) {
+  int best = 0;
+  double lowest = edge_line(vertex, n, 0).height(point);
+  for (int i = 1; i < n; ++i) {
+    const double height = edge_line(vertex, n, i).height(point);
     best = height < lowest ? i : best;
     lowest = height < lowest ? height : lowest;
   }
   return best;
 }
 
-bool separates(const Line& line, PolygonView polygon, const Vec2& origin) {
-  double highest = line.height({polygon[0].x() - origin.x(), polygon[0].y() - origin.y()});
-  for (std::size_t i = 1; i < polygon.size(); ++i) {
-    const double height = line.height({polygon[i].x() - origin.x(), polygon[i].y() - origin.y()});
+bool separates(const Line& line, const Point* vertex, int n) {
+  double highest = line.height(vertex[0]);
+  for (int i = 1; i < n; ++i) {
+    const double height = line.height(vertex[i]);
     highest = height > highest ? height : highest;
   }
   return highest <= 0;
@@ -201,21 +206,24 @@ Overlap overlap(PolygonView a, PolygonView b) {
   assert(a.size() >= 3 && b.size() >= 3 && a.size() + b.size() <= std::size_t{kMaxOverlapVertices});
   Overlap result;
   const Vec2 origin = a[0];
-  const std::size_t facing_b = facing_edge(b, mean_vertex(a, origin), origin);
-  if (separates(edge_line(b, facing_b, origin), a, origin)) return result;
-  const std::size_t facing_a = facing_edge(a, mean_vertex(b, origin), origin);
-  if (separates(edge_line(a, facing_a, origin), b, origin)) return result;
-
+  const int size_a = static_cast<int>(a.size());
+  const int size_b = static_cast<int>(b.size());
   Outline buffers[2];
   Outline* from = &buffers[0];
   Outline* to = &buffers[1];
-  from->size = static_cast<int>(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    from->vertex[i] = {a[i].x() - origin.x(), a[i].y() - origin.y()};
-    from->from_b[i] = false;
-  }
-  for (std::size_t k = 0, i = facing_b; k < b.size(); ++k, i = i + 1 < b.size() ? i + 1 : 0) {
-    const Cut cut = clip(*from, edge_line(b, i, origin), *to);
+  Point window[kMaxOverlapVertices];
+  const Point middle_a = shift(a, origin, from->vertex);
+  const Point middle_b = shift(b, origin, window);
+
+  const int facing_b = facing_edge(window, size_b, middle_a);
+  if (separates(edge_line(window, size_b, facing_b), from->vertex, size_a)) return result;
+  const int facing_a = facing_edge(from->vertex, size_a, middle_b);
+  if (separates(edge_line(from->vertex, size_a, facing_a), window, size_b)) return result;
+
+  from->size = size_a;
+  std::fill_n(from->from_b, size_a, false);
+  for (int k = 0, i = facing_b; k < size_b; ++k, i = i + 1 < size_b ? i + 1 : 0) {
+    const Cut cut = clip(*from, edge_line(window, size_b, i), *to);
     if (cut == Cut::all) return result;
     if (cut == Cut::partial) std::swap(from, to);
   }
