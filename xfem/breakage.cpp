@@ -1,0 +1,316 @@
+#include "xfem/breakage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "common/error.hpp"
+#include "common/geometry/chord_split.hpp"
+#include "xfem/crack/cracked_solver.hpp"
+#include "xfem/crack/growth.hpp"
+
+namespace xfem {
+namespace {
+
+using common::ParticleStatus;
+
+/// The ligament rule's reach: the larger of these times De and h.
+constexpr double kLigamentInDiameters = 0.1;
+constexpr double kLigamentInElements = 1.2;
+/// A new crack keeps this far from the others: the larger of the averaging radius and this times h. Within it the
+/// averaged stress is that of an existing tip, whose own rule decides.
+constexpr double kCrackSpacingInElements = 1.5;
+
+struct Critical {
+  int element = -1;
+  double load_factor = std::numeric_limits<double>::infinity();
+};
+
+Vec2 element_centroid(const Mesh& mesh, int element) {
+  const auto& [a, b, c] = mesh.triangles[element];
+  return (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
+}
+
+/// Pieces of the particle along a line, if both are large enough.
+std::optional<common::ChordSplit> split_into_fragments(const ParticleModel& model, const BreakageParameters& parameters,
+                                                       const Vec2& first, const Vec2& last) {
+  common::ChordSplit pieces;
+  try {
+    pieces = common::split_by_chord(model.outline, first, last);
+  } catch (const common::Error&) {
+    return std::nullopt;  // both ends on one edge: nothing is cut off
+  }
+  const double smallest = std::max(parameters.minimum_fragment * model.area, parameters.minimum_area);
+  if (std::min(common::area(pieces.left), common::area(pieces.right)) < smallest) return std::nullopt;
+  return pieces;
+}
+
+/// The analysis of one particle under one set of loads.
+class Analysis {
+ public:
+  Analysis(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
+           const BreakageParameters& parameters)
+      : model_(model),
+        mesh_(model.elastic.mesh()),
+        parameters_(parameters),
+        diameter_(common::equivalent_diameter(model.area)),
+        rules_{parameters.rock, std::max(kLigamentInDiameters * diameter_, kLigamentInElements * mesh_.size),
+               parameters.literal},
+        solver_(model.elastic, loads, parameters.literal ? 0 : parameters.load_patch * diameter_),
+        cracks_(cracks.begin(), cracks.end()) {
+    result_.unbalance = IntactModel::unbalance(loads);
+  }
+
+  BreakageResult run();
+
+ private:
+  std::vector<Stress> averaged(const std::vector<Stress>& stress) const {
+    return parameters_.literal ? stress : model_.average(stress);
+  }
+  bool restore_cracks();
+  bool solve();
+  bool grow_tips();
+  bool settle(const TipStep& step, int crack);
+  bool breaks_or_chips(int crack, bool& breaks);
+  bool start_next_crack();
+  std::vector<int> component_of(int crack) const;
+  void refuse(const std::string& reason);
+
+  const ParticleModel& model_;
+  const Mesh& mesh_;
+  const BreakageParameters& parameters_;
+  double diameter_;
+  GrowthRules rules_;
+  CrackedSolver solver_;
+  std::vector<Crack> cracks_;
+  CrackedState state_;
+  std::set<int> no_start_;  ///< elements in which a crack would only cut off a corner
+  BreakageResult result_;
+  bool finished_ = false;
+};
+
+void Analysis::refuse(const std::string& reason) {
+  result_.status = ParticleStatus::refused;
+  result_.reason = reason;
+  finished_ = true;
+}
+
+/// Checks the stored cracks. A crack that reaches the boundary at a second place without having split the particle
+/// loses its last points there: the rest holds, and it does not grow there again.
+bool Analysis::restore_cracks() {
+  for (std::size_t c = 0; c < cracks_.size(); ++c) {
+    const std::string defect = crack_defect(mesh_, cracks_[c]);
+    if (!defect.empty()) {
+      refuse("stored crack " + std::to_string(c) + " does not fit the mesh: " + defect);
+      return false;
+    }
+    for (int end = 0; end < 2; ++end) {
+      const CrackPoint& point = end == 0 ? cracks_[c].points.front() : cracks_[c].points.back();
+      if (on_boundary(mesh_, point)) {
+        cracks_[c].tips[end] = TipState::at_boundary;
+      } else if (cracks_[c].tips[end] == TipState::at_boundary) {
+        cracks_[c].tips[end] = TipState::active;
+      }
+    }
+  }
+  for (std::size_t c = 0; c < cracks_.size(); ++c) {
+    for (int end = 0; end < 2; ++end) {
+      if (cracks_[c].tips[end] != TipState::at_boundary) continue;
+      int mouths = 0;
+      for (const int member : component_of(static_cast<int>(c))) {
+        for (const TipState tip : cracks_[member].tips) mouths += tip == TipState::at_boundary;
+      }
+      if (mouths < 2) continue;
+      auto& points = cracks_[c].points;
+      points.erase(end == 0 ? points.begin() : points.end() - 1);
+      cracks_[c].tips[end] = TipState::arrested;
+      if (points.size() < 2) break;
+    }
+  }
+  std::erase_if(cracks_, [](const Crack& crack) { return crack.points.size() < 2; });
+  return true;
+}
+
+bool Analysis::solve() {
+  state_ = solver_.solve(cracks_);
+  if (!state_.solved) refuse("the cracked system is singular: a part of the particle is loose");
+  return state_.solved;
+}
+
+/// All cracks that hang together with `crack` by tips that ran into one another, ascending.
+std::vector<int> Analysis::component_of(int crack) const {
+  const std::vector<int> cutting = cutting_cracks(mesh_, cracks_);
+  const int n = static_cast<int>(cracks_.size());
+  std::vector<int> label(n);
+  for (int c = 0; c < n; ++c) label[c] = c;
+  for (int c = 0; c < n; ++c) {
+    if (cracks_[c].points.size() < 2) continue;
+    for (int end = 0; end < 2; ++end) {
+      if (cracks_[c].tips[end] != TipState::at_crack) continue;
+      const int ahead = element_ahead(mesh_, cracks_[c], end);
+      const int other = ahead < 0 ? -1 : cutting[ahead];
+      if (other < 0 || label[other] == label[c]) continue;
+      const int from = std::max(label[other], label[c]);
+      const int to = std::min(label[other], label[c]);
+      std::replace(label.begin(), label.end(), from, to);
+    }
+  }
+  std::vector<int> members;
+  for (int c = 0; c < n; ++c) {
+    if (label[c] == label[crack]) members.push_back(c);
+  }
+  return members;
+}
+
+/// True if the cracks connected with `crack` join two boundary points; `breaks` tells whether the pieces are large
+/// enough, and then they stand in the result.
+bool Analysis::breaks_or_chips(int crack, bool& breaks) {
+  std::vector<Vec2> mouths;
+  for (const int member : component_of(crack)) {
+    for (int end = 0; end < 2; ++end) {
+      if (cracks_[member].tips[end] != TipState::at_boundary) continue;
+      mouths.push_back((end == 0 ? cracks_[member].points.front() : cracks_[member].points.back()).position);
+    }
+  }
+  breaks = false;
+  if (mouths.size() < 2) return false;
+  double largest_minor = 0;
+  for (std::size_t i = 0; i < mouths.size(); ++i) {
+    for (std::size_t j = i + 1; j < mouths.size(); ++j) {
+      std::optional<common::ChordSplit> pieces = split_into_fragments(model_, parameters_, mouths[i], mouths[j]);
+      if (!pieces) continue;
+      const double minor = std::min(common::area(pieces->left), common::area(pieces->right));
+      if (minor <= largest_minor) continue;
+      largest_minor = minor;
+      breaks = true;
+      result_.path = {mouths[i], mouths[j]};
+      result_.left = std::move(pieces->left);
+      result_.right = std::move(pieces->right);
+    }
+  }
+  return true;
+}
+
+/// Takes over a tip's step; false if the analysis ends with it.
+bool Analysis::settle(const TipStep& step, int crack) {
+  cracks_[crack] = step.crack;
+  if (step.outcome == TipOutcome::arrested) result_.reason = "no valid way on";
+  if (step.outcome == TipOutcome::through || step.outcome == TipOutcome::merged) {
+    bool breaks = false;
+    if (breaks_or_chips(crack, breaks)) {
+      if (breaks) {
+        result_.status = ParticleStatus::broken;
+        result_.reason.clear();
+        finished_ = true;
+        return false;
+      }
+      cracks_[crack] = step.fallback;
+      result_.reason = "chip";
+    }
+  }
+  return solve();
+}
+
+/// One step of every active tip, in order; true if something changed and the analysis goes on.
+bool Analysis::grow_tips() {
+  bool changed = false;
+  for (int c = 0; c < static_cast<int>(cracks_.size()); ++c) {
+    for (int end = 0; end < 2; ++end) {
+      if (cracks_[c].tips[end] != TipState::active) continue;
+      const TipStep step =
+          advance_tip(mesh_, model_.outline, rules_, state_.stress, cutting_cracks(mesh_, cracks_), cracks_, c, end);
+      if (step.outcome == TipOutcome::stays) continue;
+      ++result_.growth_steps;
+      changed = true;
+      if (!settle(step, c)) return false;
+      if (result_.growth_steps > 4 * static_cast<int>(mesh_.triangles.size())) {
+        refuse("crack growth did not come to an end");
+        return false;
+      }
+    }
+  }
+  return changed;
+}
+
+/// Starts a crack where the averaged stress fails first, away from the cracks that are there; false if none starts.
+bool Analysis::start_next_crack() {
+  if (static_cast<int>(cracks_.size()) >= parameters_.max_cracks) return false;
+  const std::vector<Stress> stress = averaged(state_.stress);
+  const std::vector<int> cutting = cutting_cracks(mesh_, cracks_);
+  const double spacing = std::max(parameters_.literal ? 0.0 : parameters_.initiation_radius * diameter_,
+                                  kCrackSpacingInElements * mesh_.size);
+  while (true) {
+    Critical critical;
+    for (int t = 0; t < static_cast<int>(stress.size()); ++t) {
+      if (cutting[t] >= 0 || no_start_.contains(t)) continue;
+      const double factor = load_factor(parameters_.rock, stress[t]);
+      if (factor > 1 || factor >= critical.load_factor) continue;
+      const Vec2 center = element_centroid(mesh_, t);
+      const bool is_near = std::any_of(cracks_.begin(), cracks_.end(), [&](const Crack& crack) {
+        return std::any_of(crack.points.begin(), crack.points.end(), [&](const CrackPoint& point) {
+          return (point.position - center).squaredNorm() < spacing * spacing;
+        });
+      });
+      if (!is_near) critical = {t, factor};
+    }
+    if (critical.element < 0) return false;
+    const std::optional<Crack> crack = start_crack(mesh_, rules_, stress, critical.element);
+    if (!crack) {
+      no_start_.insert(critical.element);
+      result_.reason = "chip";
+      continue;
+    }
+    cracks_.push_back(*crack);
+    return solve();
+  }
+}
+
+BreakageResult Analysis::run() {
+  const std::vector<Stress> intact = model_.elastic.stresses(solver_.intact_displacement());
+  const std::vector<Stress> intact_average = averaged(intact);
+  Critical critical;
+  for (int t = 0; t < static_cast<int>(intact_average.size()); ++t) {
+    const double factor = load_factor(parameters_.rock, intact_average[t]);
+    if (factor < critical.load_factor) critical = {t, factor};
+  }
+  result_.min_safety_factor = critical.load_factor;
+  result_.critical_element = critical.element;
+  if (critical.element >= 0) {
+    const PrincipalStress p = principal(intact_average[critical.element]);
+    result_.failure_mode = parameters_.rock.mode(p.s1, p.s3);
+  }
+  result_.mean_stress = mean_stress(mesh_, intact);
+
+  if (!std::isfinite(result_.mean_stress.xx + result_.mean_stress.yy + result_.mean_stress.xy)) {
+    refuse("the stress is not finite");
+  } else if (restore_cracks() && (critical.load_factor <= 1 || !cracks_.empty()) && solve()) {
+    while (!finished_ && (grow_tips() || (!finished_ && start_next_crack()))) {
+    }
+    if (state_.solved) result_.mean_stress = mean_stress(mesh_, state_.stress);
+  }
+  if (!finished_) {
+    const bool failed_somewhere = !cracks_.empty() || critical.load_factor <= 1;
+    result_.status = failed_somewhere ? ParticleStatus::arrested : ParticleStatus::intact;
+  }
+  result_.cracks = std::move(cracks_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+ParticleModel::ParticleModel(PolygonView outline_, int nodes, const ElasticConstants& constants,
+                             double averaging_radius_in_de)
+    : outline(outline_.begin(), outline_.end()),
+      area(common::area(outline_)),
+      elastic(make_mesh(outline_, nodes), constants),
+      average(elastic.mesh(), averaging_radius_in_de * common::equivalent_diameter(area)) {}
+
+BreakageResult analyse(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
+                       const BreakageParameters& parameters) {
+  std::vector<Load> scaled(loads.begin(), loads.end());
+  for (Load& load : scaled) load.force *= parameters.load_factor;
+  return Analysis(model, scaled, cracks, parameters).run();
+}
+
+}  // namespace xfem

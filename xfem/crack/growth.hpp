@@ -1,0 +1,60 @@
+// Where a crack starts and how its tips go on, one element per step.
+//
+// Start: along the failure plane through the centroid of the element with the smallest load factor.
+// Tip rule: a tip advances if any uncut element that shares a node of the tip edge and lies ahead of the tip fails;
+// the direction comes from the area-weighted mean stress of these elements. Of the two conjugate shear planes the one
+// nearest to the previous chord is taken, and the kink against the chord over the last h is at most 45 degrees.
+// Ligament rule: an advancing tip within `ligament` of the boundary along its ray goes straight through.
+// `literal` is the reading of Raisianzadeh et al. 2019, section 2.2: only the element across the tip edge counts, any
+// kink, no ligament rule.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "xfem/crack/path.hpp"
+#include "xfem/criterion/hoek_brown.hpp"
+
+namespace xfem {
+
+struct GrowthRules {
+  HoekBrown rock;
+  double ligament = 0;  ///< [m]
+  bool literal = false;
+};
+
+/// Load factor at failure of a stress state.
+double load_factor(const HoekBrown& rock, const Stress& stress);
+
+/// For each element the index of the crack that cuts it (the lowest), -1: none.
+std::vector<int> cutting_cracks(const Mesh& mesh, std::span<const Crack> cracks);
+
+/// The element that a tip would enter, `end` 0 or 1; -1 at the boundary.
+int element_ahead(const Mesh& mesh, const Crack& crack, int end);
+
+/// A crack through one element. Of two conjugate shear planes the one whose neighbouring elements along the plane are
+/// nearer to failure (larger sum of 1 / lambda; the boundary counts 0), the first on ties. Empty if both exits are on
+/// the boundary: that would only cut off a corner.
+std::optional<Crack> start_crack(const Mesh& mesh, const GrowthRules& rules, std::span<const Stress> stress,
+                                 int element);
+
+enum class TipOutcome {
+  stays,     ///< nothing ahead fails
+  grown,     ///< by one element
+  through,   ///< reached the boundary
+  merged,    ///< the element ahead is cut by another crack
+  arrested,  ///< for good: no valid way on
+};
+
+struct TipStep {
+  TipOutcome outcome = TipOutcome::stays;
+  Crack crack;     ///< after the step
+  Crack fallback;  ///< through, merged: the crack up to the last tip inside, arrested there, if the path is a chip
+};
+
+/// One step of an active tip. `stress`: element stresses of the current cracked state; `cutting`: cutting_cracks.
+TipStep advance_tip(const Mesh& mesh, PolygonView outline, const GrowthRules& rules, std::span<const Stress> stress,
+                    std::span<const int> cutting, std::span<const Crack> cracks, int crack, int end);
+
+}  // namespace xfem
