@@ -112,7 +112,7 @@ void validate_contacts(const Frame& frame, FrameContent content, const Source& s
     if (c.a[i] == c.b[i]) {
       source.fail_dataset("contacts/b", fmt::format("entry {}: particle {} in contact with itself", i, c.b[i]));
     }
-    if (content == FrameContent::contact_state) continue;
+    if (content != FrameContent::everything) continue;
     if (c.a[i] > c.b[i]) {
       source.fail_dataset("contacts/b",
                           fmt::format("entry {} is {}, expected more than contacts/a, which is {}", i, c.b[i], c.a[i]));
@@ -156,7 +156,7 @@ void validate(const Frame& frame, FrameContent content, const Source& source) {
   }
   const auto check_array = [&](std::size_t rows) {
     return [&source, content, rows](const char* path, const auto& values, const char*, const char*, bool needed) {
-      const bool may_be_absent = !needed && content == FrameContent::contact_state;
+      const bool may_be_absent = !needed && content != FrameContent::everything;
       if (!(may_be_absent && values.empty())) check_rows(path, values.size(), rows, source);
       check_finite(path, values, source);
     };
@@ -282,7 +282,7 @@ Frame read_frame(const std::filesystem::path& path, FrameContent content) {
   };
   particle_fields(frame.particles, get);
   outline_fields(frame.particles, get);
-  contact_fields(frame.contacts, get);
+  if (content != FrameContent::particles || contents.contains("contacts/a")) contact_fields(frame.contacts, get);
   if (contents.contains(kSlip)) frame.contacts.shear_displacement = get_column<double>(contents, kSlip, source);
   get(kRing, frame.ring, "", "", false);
   frame.history = columns_in(contents, "history", source);

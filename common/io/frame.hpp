@@ -81,8 +81,9 @@ struct Frame {
 };
 
 /// What a reader needs: `contact_state` accepts files with only particles/{id,position,angle,boundary,vertex_offset,
-/// vertices} and contacts/{a,b,point,force} (absent arrays come out empty); `everything` insists on all.
-enum class FrameContent { contact_state, everything };
+/// vertices} and contacts/{a,b,point,force} (absent arrays come out empty); `particles` does without the contacts,
+/// too; `everything` insists on all.
+enum class FrameContent { particles, contact_state, everything };
 
 /// Writes atomically (image + rename). Sets frame.payload_hash. Throws io_failure; then no file of that name changed.
 WrittenFile write_frame(const std::filesystem::path& path, Frame& frame, Durability durability);

@@ -17,7 +17,7 @@ ServoGains servo_gains(const common::ServoOptions& options, double pressure, dou
   const double wave_time = radius / std::sqrt(options.modulus / density);
   ServoGains gains{};
   gains.proportional = 0.3 / (options.modulus * wave_time);
-  gains.integral = gains.proportional / (6 * wave_time);
+  gains.integral = gains.proportional / (1.5 * wave_time);
   gains.max_rate = options.max_rate > 0 ? options.max_rate : 0.1 * pressure / (options.modulus * wave_time);
   return gains;
 }

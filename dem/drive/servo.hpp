@@ -2,7 +2,7 @@
 //
 //   rate = kp (p - sigma) + integral,  d integral/dt = ki (p - sigma),  |rate| <= max_rate
 // With K the modulus that the gains refer to and tau = R / c the time a stress wave takes from the ring to the centre:
-//   kp = 0.3 / (K tau),  ki = kp / (6 tau).
+//   kp = 0.3 / (K tau),  ki = kp / (1.5 tau).
 // Proportional control alone leaves an offset, since the lateral strain rate of a shearing sample is not zero.
 #pragma once
 

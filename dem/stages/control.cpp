@@ -1,12 +1,10 @@
 #include "dem/stages/control.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "common/error.hpp"
 #include "dem/boundary/ring.hpp"
+#include "dem/checkpoint.hpp"
 #include "dem/measures.hpp"
 
 namespace dem {
@@ -38,15 +36,6 @@ constexpr Entry kEntries[] = {
 
 common::Column column(const std::string& name, const char* unit, const char* description, double value) {
   return {name, unit, description, {value}};
-}
-
-double value_of(const common::Frame& frame, const std::string& name) {
-  for (const common::Column& c : frame.checkpoint) {
-    if (c.name == name && c.values.size() == 1) return c.values[0];
-  }
-  throw common::bad_input(
-      fmt::format("frame {}: dataset checkpoint/{} is missing or not one number; this file is no checkpoint of dem",
-                  frame.frame, name));
 }
 
 std::vector<std::int32_t> ring_of(const Particles& p) {
@@ -107,10 +96,10 @@ std::vector<common::Column> to_columns(const Control& control) {
 
 Control read_control(const common::Frame& frame) {
   Control control;
-  control.phase = static_cast<Phase>(std::clamp(static_cast<int>(value_of(frame, "phase")), 0, 5));
-  for (const Entry& e : kEntries) control.*e.member = value_of(frame, e.name);
-  control.servo_x = {value_of(frame, "servo_integral_x"), value_of(frame, "servo_rate_x")};
-  control.servo_y = {value_of(frame, "servo_integral_y"), value_of(frame, "servo_rate_y")};
+  control.phase = static_cast<Phase>(std::clamp(static_cast<int>(checkpoint_value(frame, "phase")), 0, 5));
+  for (const Entry& e : kEntries) control.*e.member = checkpoint_value(frame, e.name);
+  control.servo_x = {checkpoint_value(frame, "servo_integral_x"), checkpoint_value(frame, "servo_rate_x")};
+  control.servo_y = {checkpoint_value(frame, "servo_integral_y"), checkpoint_value(frame, "servo_rate_y")};
   return control;
 }
 

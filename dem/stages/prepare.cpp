@@ -13,6 +13,7 @@ namespace {
 constexpr double kContactStress = 0.02;    // of the pressure: particles touch
 constexpr double kRelaxed = 0.05;          // unbalanced force at which relaxation ends
 constexpr double kPressureReached = 0.01;  // relative error of both stresses
+constexpr double kPressureFollowed = 0.1;
 constexpr double kPressureHeld = 0.003;
 constexpr int kRingInterval = 50;
 constexpr int kServoInterval = 10;
@@ -94,9 +95,11 @@ void Preparation::steer() {
   if (control_.phase == Phase::confinement) {
     if ((error < kPressureReached && engine_.health().unbalanced_force < 0.01) || late) enter(Phase::densification);
   } else if (control_.phase == Phase::densification) {
+    // The servo must follow: a sample that lost its pressure would lose its friction for nothing.
+    if (error > kPressureFollowed && !late) return;
     if (target_void_ratio_error() <= 0) {
       enter(Phase::hold);
-    } else if (state.friction < kLowestFriction) {
+    } else if (state.friction < kLowestFriction || late) {
       warning_ =
           fmt::format("void ratio {:.4f} not reached: {:.4f} at friction {:.3f}; the sample is used as it is",
                       scene_.preparation.void_ratio, void_ratio(state, scene_.preparation.definition), state.friction);

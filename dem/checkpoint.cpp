@@ -1,0 +1,118 @@
+#include "dem/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/error.hpp"
+
+namespace dem {
+namespace {
+
+struct EnergyEntry {
+  const char* name;
+  const char* description;
+  double EnergySums::*member;
+};
+
+constexpr EnergyEntry kEnergies[] = {
+    {"energy_boundary_work", "work of the boundary since the start of shear", &EnergySums::boundary_work},
+    {"energy_friction", "dissipated by friction since the start of shear", &EnergySums::friction},
+    {"energy_damping", "dissipated by damping since the start of shear", &EnergySums::damping},
+    {"energy_contact_law", "path-dependent work of the normal law since the start of shear",
+     &EnergySums::contact_law_work},
+    {"energy_released", "elastic energy that vanished at splits since the start of shear",
+     &EnergySums::released_by_breakage},
+};
+
+}  // namespace
+
+double checkpoint_value(const common::Frame& frame, const std::string& name) {
+  for (const common::Column& c : frame.checkpoint) {
+    if (c.name == name && c.values.size() == 1) return c.values[0];
+  }
+  throw common::bad_input(
+      fmt::format("frame {}: dataset checkpoint/{} is missing or not one number; this file is no checkpoint of dem",
+                  frame.frame, name));
+}
+
+std::vector<std::int32_t> indices_of(const std::vector<std::int64_t>& ids, const Particles& particles) {
+  std::vector<std::int32_t> indices;
+  indices.reserve(ids.size());
+  for (const std::int64_t id : ids) {
+    const auto found = std::lower_bound(particles.id.begin(), particles.id.end(), id);
+    if (found == particles.id.end() || *found != id) {
+      throw common::bad_input(fmt::format("particle {} is named but not in particles/id", id));
+    }
+    indices.push_back(static_cast<std::int32_t>(found - particles.id.begin()));
+  }
+  return indices;
+}
+
+std::vector<Contact> contacts_in(const common::Contacts& contacts, const Particles& particles) {
+  const std::vector<std::int32_t> a = indices_of(contacts.a, particles);
+  const std::vector<std::int32_t> b = indices_of(contacts.b, particles);
+  std::vector<Contact> result(contacts.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    Contact& c = result[i];
+    c.a = a[i];
+    c.b = b[i];
+    if (i < contacts.point.size()) c.point = contacts.point[i];
+    if (i < contacts.normal.size()) c.normal = contacts.normal[i];
+    if (i < contacts.normal_force.size()) c.normal_force = contacts.normal_force[i];
+    if (i < contacts.shear_force.size()) c.shear_force = contacts.shear_force[i];
+    if (i < contacts.overlap_area.size()) c.overlap_area = contacts.overlap_area[i];
+    if (i < contacts.overlap_width.size()) c.overlap_width = contacts.overlap_width[i];
+    if (contacts.shear_displacement) c.shear_displacement = (*contacts.shear_displacement)[i];
+  }
+  return result;
+}
+
+common::Frame to_frame(const State& state, const common::Scene& scene, common::Stage stage) {
+  common::Frame frame;
+  frame.step = state.step;
+  frame.time = state.time;
+  frame.stage = stage;
+  frame.seed = scene.seed;
+  frame.next_id = state.next_id;
+  frame.friction = state.friction;
+  frame.particles = state.particles;
+
+  common::Contacts& contacts = frame.contacts;
+  if (scene.effects.friction) contacts.shear_displacement.emplace();
+  for (const Contact& c : state.contacts) {
+    contacts.a.push_back(state.particles.id[c.a]);
+    contacts.b.push_back(state.particles.id[c.b]);
+    contacts.point.push_back(c.point);
+    contacts.normal.push_back(c.normal);
+    contacts.force.push_back(c.force());
+    contacts.normal_force.push_back(c.normal_force);
+    contacts.shear_force.push_back(c.shear_force);
+    contacts.overlap_area.push_back(c.overlap_area);
+    contacts.overlap_width.push_back(c.overlap_width);
+    if (contacts.shear_displacement) contacts.shear_displacement->push_back(c.shear_displacement);
+  }
+  for (const std::int32_t i : state.ring) frame.ring.push_back(state.particles.id[i]);
+
+  frame.checkpoint.push_back({"time_step", "s", "dt", {state.time_step}});
+  for (const EnergyEntry& e : kEnergies) {
+    frame.checkpoint.push_back({e.name, "J", e.description, {state.energy.*e.member}});
+  }
+  return frame;
+}
+
+State to_state(const common::Frame& frame) {
+  State state;
+  state.particles = frame.particles;
+  state.contacts = contacts_in(frame.contacts, state.particles);
+  state.ring = indices_of(frame.ring, state.particles);
+  state.step = frame.step;
+  state.time = frame.time;
+  state.time_step = checkpoint_value(frame, "time_step");
+  state.friction = frame.friction;
+  state.next_id = frame.next_id;
+  for (const EnergyEntry& e : kEnergies) state.energy.*e.member = checkpoint_value(frame, e.name);
+  return state;
+}
+
+}  // namespace dem
