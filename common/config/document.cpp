@@ -71,6 +71,14 @@ class Converter {
   int count_ = 0;
 };
 
+std::string line_of(const std::string& text, int number) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i <= number && std::getline(lines, line); ++i) {
+  }
+  return line;
+}
+
 Value parse(const std::string& text, const Source& source) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
@@ -84,9 +92,15 @@ Value parse(const std::string& text, const Source& source) {
     }
     return Converter(source).convert(documents[0], 0);
   } catch (const YAML::Exception& error) {
-    const bool tab = error.msg.find("tab") != std::string::npos;
-    throw bad_input(source.place(error.mark) + ": syntax error: " + error.msg +
-                    (tab ? ", expected spaces (YAML does not allow tabs there)" : ", expected YAML"));
+    // yaml-cpp reports most tabs as something else, further on in the line.
+    const std::string line = line_of(text, error.mark.line);
+    const std::size_t tab = line.substr(0, line.find_first_not_of(" \t")).find('\t');
+    if (tab != std::string::npos) {
+      YAML::Mark mark = error.mark;
+      mark.column = static_cast<int>(tab);
+      throw bad_input(source.place(mark) + ": syntax error: found a tab in the indentation, expected spaces");
+    }
+    throw bad_input(source.place(error.mark) + ": syntax error: " + error.msg + ", expected valid YAML");
   }
 }
 
@@ -131,8 +145,10 @@ std::string describe(const Value& value) {
     case Value::Kind::scalar:
       break;
   }
-  if (value.quoted) return "the quoted text " + in_quotes(value.text);
-  return looks_like_number(value.text) ? value.text : in_quotes(value.text);
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value.text.size() > kLongest ? value.text.substr(0, kLongest) + "..." : value.text;
+  if (value.quoted) return "the quoted text " + in_quotes(text);
+  return looks_like_number(text) ? text : in_quotes(text);
 }
 
 }  // namespace common

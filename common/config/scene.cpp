@@ -253,11 +253,18 @@ void resolve_shapes(Specification& keys, ShapeOptions& shapes) {
   const std::string source = "assembly.shapes.source";
   const std::string file = "assembly.shapes.file";
   const std::string outlines = "assembly.shapes.outlines";
-  if (!keys.given(source)) {
-    if (!shapes.outlines.empty())
-      shapes.source = "outlines";
-    else if (!shapes.file.empty())
-      shapes.source = "file";
+  const auto overridden = [&keys](const std::string& path) { return keys.where(path).rfind("--set ", 0) == 0; };
+  // A file named on the command line alone replaces what the scene has.
+  const bool new_file = overridden(file) && !overridden(source) && !overridden(outlines) && !shapes.file.empty();
+  if (new_file) {
+    shapes.source = "file";
+  } else if (!keys.given(source)) {
+    if (!shapes.outlines.empty() && !shapes.file.empty()) {
+      keys.fail({file}, file + ": found both a file and outlines, expected one or the other");
+      return;
+    }
+    if (!shapes.outlines.empty()) shapes.source = "outlines";
+    if (!shapes.file.empty()) shapes.source = "file";
   }
   if (shapes.source == "generated" && (!shapes.file.empty() || !shapes.outlines.empty())) {
     keys.fail({source, file, outlines}, source + ": found \"generated\" although " +

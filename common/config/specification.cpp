@@ -142,6 +142,10 @@ std::vector<std::string> Specification::names_in(const std::string& section) con
 std::string Specification::unknown_key(const std::string& name, const std::string& section) const {
   const std::vector<std::string> names = names_in(section);
   std::string text = "unknown key " + in_quotes(name) + (section.empty() ? "" : " in " + section);
+  if (names.empty()) return text + "; expected a value of " + section + ", which has no keys below it";
+  if (find(below(section, name))) {  // a dotted name in a file
+    return text + "; expected it in its section, as in " + name.substr(0, name.find('.')) + ": {...}";
+  }
   if (nearest_name(name, names).empty()) {
     for (const Binding& binding : bindings_) {
       if (name_of(binding.key.path) == name) return text + "; did you mean \"" + binding.key.path + "\"?";

@@ -23,10 +23,10 @@ std::optional<Integer> parse_digits(std::string_view text) {
   return number;
 }
 
-// A limit as a person writes it: 1, 0.5, 1e+06.
+// A limit as a person writes it: 1, 0.5, 10000000.
 std::string print_limit(double number) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr};
+  char buffer[400];  // the longest double without an exponent has 309 digits before the dot
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::fixed).ptr};
 }
 
 }  // namespace
