@@ -29,6 +29,7 @@ class Child:
     def __init__(self, name, arguments, lock, listener, cwd=None):
         self.name = name
         self._listener = listener
+        self._said = []  # messages for people, as heard on stderr
         command = [executable(name), *arguments]
         if shutil.which("setpriv"):
             command = ["setpriv", "--pdeathsig", "KILL", *command]
@@ -49,6 +50,7 @@ class Child:
             if isinstance(event, dict) and "event" in event:
                 self._listener.child_event(self.name, event)
             elif line:
+                self._said.append(line)
                 self._listener.child_message(self.name, line)
 
     def send(self, line):
@@ -64,7 +66,9 @@ class Child:
         if line.startswith("error "):
             _, code, text = (line.split(" ", 2) + [""])[:3]
             self.wait()
-            raise RockbreakError(int(code) if code.isdigit() else IO_FAILURE, f"{self.name}: {text}")
+            said = text in " ".join(self._said)
+            raise RockbreakError(int(code) if code.isdigit() else IO_FAILURE,
+                                 f"{self.name} failed; its message stands above" if said else f"{self.name}: {text}")
         if not line:
             if self.wait() != 0:
                 self.fail()
@@ -87,7 +91,8 @@ class Child:
             raise RockbreakError(128 - code, f"{self.name} was ended by signal {-code} ({name})")
         if code == 0:
             raise RockbreakError(IO_FAILURE, f"{self.name} ended before its work was done")
-        raise RockbreakError(code, f"{self.name} failed with exit code {code}; its message stands above")
+        raise RockbreakError(code, f"{self.name} failed with exit code {code}"
+                             + ("; its message stands above" if self._said else ""))
 
     def finish(self):
         """Waits for an orderly end."""

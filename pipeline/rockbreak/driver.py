@@ -15,8 +15,7 @@ import numpy as np
 from .child import Child
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger
-from .payload_hash import hash_file
-from .run_directory import RunDirectory, attributes, broken_in
+from .run_directory import RunDirectory, attributes, broken_in, written_file
 
 
 @dataclass
@@ -217,7 +216,7 @@ class Run:
                                  "all (the report needs the history in every frame)")
         if self._breakable:
             (self.directory.path / "splits").mkdir(exist_ok=True)
-            self._broken = sum(broken_in(self.directory.split_file(k)) for k in self.directory.split_numbers())
+            self._broken = 0
 
     def _is_final(self, k):
         return bool(attributes(self.directory.frame_file(k)).get("final", 0))
@@ -230,6 +229,7 @@ class Run:
         while first >= 0 and not self.directory.split_answers(first):
             self.directory.split_file(first).unlink(missing_ok=True)
             first -= 1
+        self._broken = sum(broken_in(self.directory.split_file(k)) for k in range(first + 1))
         for k in range(first + 1, newest + 1):
             begin = time.perf_counter()
             waited = self._solve(k)
@@ -248,11 +248,10 @@ class Run:
                 state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
                          "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
                 final = bool(file.attrs["final"])
-                payload = attributes(path)["payload_hash"]
         except (OSError, KeyError) as error:
             raise RockbreakError(IO_FAILURE, f"{path}: not a readable frame: {error}") from error
-        self._ledger.write("frame", path=f"frames/{path.name}", bytes=path.stat().st_size, payload_hash=payload,
-                           file_hash=hash_file(path), final=final, **state, seconds={"dem": round(dem_seconds, 6)})
+        self._ledger.write("frame", **state, final=final, **written_file(path),
+                           seconds={"dem": round(dem_seconds, 6)})
         self._progress.frame({**state, "broken": self._broken, "target_strain": self._target_strain})
         return final
 
@@ -262,8 +261,7 @@ class Run:
             return
         broken = broken_in(path)
         self._broken += broken
-        self._ledger.write("split", frame=k, path=f"splits/{path.name}", bytes=path.stat().st_size,
-                           payload_hash=attributes(path)["payload_hash"], file_hash=hash_file(path), broken=broken,
+        self._ledger.write("split", frame=k, broken=broken, **written_file(path),
                            seconds={"xfem": round(waited, 6), "handover": round(handover, 6)})
         for particle, reason in _refusals_in(path):
             self.child_event("xfem", {"event": "warning", "frame": k, "particle": particle,

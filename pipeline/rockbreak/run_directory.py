@@ -10,7 +10,7 @@ import h5py
 import yaml
 
 from .errors import BAD_INPUT, IO_FAILURE, RockbreakError
-from .payload_hash import payload_hash
+from .payload_hash import payload_hash, xxh3_128
 
 DRIVER_FILES = {".lock"}
 
@@ -118,9 +118,17 @@ def plain(value):
 def is_valid(path):
     """True if every dataset passes its checksum and the payload has the hash that the file states."""
     try:
-        return payload_hash(path) == attributes(path).get("payload_hash")
+        with h5py.File(path, "r") as file:
+            return payload_hash(file) == plain(file.attrs.get("payload_hash"))
     except (OSError, RockbreakError, KeyError, ValueError):
         return False
+
+
+def written_file(path):
+    """What the ledger keeps of a file: name in its folder, size, payload hash and hash of the whole file."""
+    content = path.read_bytes()
+    return {"path": f"{path.parent.name}/{path.name}", "bytes": len(content),
+            "payload_hash": attributes(path).get("payload_hash"), "file_hash": xxh3_128(content)}
 
 
 def broken_in(split_file):

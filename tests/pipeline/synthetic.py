@@ -21,10 +21,7 @@ CASE = {
 def seal(path):
     """Adds the payload hash, as the writers of frames and splits do."""
     with h5py.File(path, "a") as file:
-        file.attrs["payload_hash"] = "0" * 32
-    value = payload_hash(path)
-    with h5py.File(path, "a") as file:
-        file.attrs["payload_hash"] = value
+        value = file.attrs["payload_hash"] = payload_hash(file)
     return value
 
 
