@@ -34,7 +34,10 @@ struct ElementGradients {
 
 class IntactModel {
  public:
+  /// Throws bad_input for constants outside E > 0, -1 < nu < 0.5, numerical_failure if the stiffness is not definite.
   IntactModel(Mesh mesh, const ElasticConstants& constants);
+  /// With three dofs of the caller's choice held; they must be statically determinate.
+  IntactModel(Mesh mesh, const ElasticConstants& constants, const std::array<int, 3>& fixed_dofs);
   ~IntactModel();
   IntactModel(IntactModel&&) noexcept;
   IntactModel& operator=(IntactModel&&) noexcept;
@@ -48,15 +51,16 @@ class IntactModel {
   const std::array<int, 3>& fixed_dofs() const;
 
   /// Nodal forces (2 n) [N] of the loads as consistent edge loads at the nearest point of the boundary (`patch` > 0:
-  /// spread evenly over that length along the boundary, resultant and moment kept), plus the body force of the rigid
-  /// acceleration that balances them (inertia relief): their sum and moment vanish.
+  /// spread over that length [m] along the boundary, see loads.hpp), plus the body force of the rigid acceleration that
+  /// balances them (inertia relief): their sum and moment vanish. The moment that a load loses by being moved to the
+  /// boundary is thereby balanced too.
   Eigen::VectorXd nodal_forces(std::span<const Load> loads, double patch = 0) const;
   /// |resultant of the loads| / sum of |load|, before inertia relief.
   static double unbalance(std::span<const Load> loads);
 
-  /// Displacements (2 n) [m] for nodal forces (2 n); the fixed dofs come out zero.
+  /// Displacements (2 n) [m] for nodal forces (2 n); the fixed dofs come out zero. Thread-safe.
   Eigen::VectorXd solve(const Eigen::VectorXd& forces) const;
-  /// The same for many right-hand sides at once (2 n x k).
+  /// The same for many right-hand sides at once (2 n x k), each column bit for bit as if alone.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& forces) const;
 
   /// Element stresses, compression positive [Pa].
@@ -79,8 +83,12 @@ class StressAverage {
   std::vector<double> weight_;
 };
 
-/// Virial mean stress sum(f (x) x) / A of loads with inertia relief, compression positive [Pa]; it equals the
-/// area-weighted mean of the element stresses to rounding, cracked or not.
-Stress virial_stress(std::span<const Load> loads, PolygonView outline);
+/// Virial mean stress sum(f (x) x) / A of the forces that `IntactModel::nodal_forces` applies (loads moved to the
+/// nearest boundary point, `patch` [m], body force of inertia relief), compression positive [Pa]; needs no mesh. It
+/// equals the area-weighted mean of the element stresses to rounding, cracked or not.
+Stress virial_stress(std::span<const Load> loads, PolygonView outline, double patch = 0);
+
+/// Area-weighted mean of element stresses [Pa].
+Stress mean_stress(const Mesh& mesh, std::span<const Stress> element_stress);
 
 }  // namespace xfem

@@ -21,6 +21,9 @@ double smallest_angle_cosine(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 namespace {
 
+// Cosine of 33 degrees: nodes all of whose triangles have a smaller angle above that stay.
+constexpr double kGoodEnough = 0.8387;
+
 using Triangles = std::vector<std::array<int, 3>>;
 
 /// Triangles around each node.
@@ -78,6 +81,7 @@ std::vector<std::array<int, 3>> smooth(std::vector<Vec2>& points, int boundary, 
     bool moved = false;
     for (int node = boundary; node < static_cast<int>(points.size()); ++node) {
       const double before = worst_of_star(points, triangles, stars, node, points[node]);
+      if (before < kGoodEnough) continue;
       Vec2 best = points[node];
       double best_worst = before;
       Vec2 mean = Vec2::Zero();
