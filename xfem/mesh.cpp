@@ -14,11 +14,27 @@ namespace {
 
 constexpr int kCountPasses = 12;
 constexpr int kSmoothingPasses = 6;
+constexpr double kCountTolerance = 0.08;
+constexpr double kGoodCosine = 0.9135;  // 24 degrees
 
 struct Attempt {
   Placement placement;
   SizeField size;
   double error;
+};
+
+struct Triangulated {
+  Placement placement;
+  std::vector<std::array<int, 3>> triangles;
+  double count_error;
+  double worst_cosine;  ///< of the smallest angle
+
+  bool better_than(const Triangulated& other) const {
+    const bool counted = count_error <= kCountTolerance;
+    const bool other_counted = other.count_error <= kCountTolerance;
+    if (counted != other_counted) return counted;
+    return counted ? worst_cosine < other.worst_cosine : count_error < other.count_error;
+  }
 };
 
 /// The placement whose number of points is nearest to `nodes` after a few corrections of h.
@@ -42,6 +58,16 @@ Attempt place_about(PolygonView outline, double area, int nodes, const Vec2& shi
     if (too_fine > 0 && too_coarse > 0 && (h <= too_fine || h >= too_coarse)) h = std::sqrt(too_fine * too_coarse);
   }
   return std::move(*best);
+}
+
+Triangulated triangulate(PolygonView outline, double area, int nodes, const Vec2& shift) {
+  Attempt attempt = place_about(outline, area, nodes, shift);
+  std::vector<Vec2>& points = attempt.placement.points;
+  auto triangles = smooth(points, static_cast<int>(attempt.placement.on_edge.size()), attempt.size, kSmoothingPasses);
+  double worst = 0;
+  for (const auto& [a, b, c] : triangles)
+    worst = std::max(worst, smallest_angle_cosine(points[a], points[b], points[c]));
+  return {std::move(attempt.placement), std::move(triangles), attempt.error, worst};
 }
 
 }  // namespace
@@ -159,25 +185,27 @@ Mesh make_mesh(PolygonView outline, int nodes) {
     unit.emplace_back(std::floor(p.x() + 0.5) / kGrid, std::floor(p.y() + 0.5) / kGrid);
   }
 
-  Attempt attempt = place_about(unit, common::area(unit), nodes, Vec2(0, 0));
-  if (attempt.error > 0.08) {
-    // The count jumps by whole lattice rows of a thin outline: another position of the lattice jumps elsewhere.
-    Attempt shifted = place_about(unit, common::area(unit), nodes, Vec2(0.3, 0.4));
-    if (shifted.error < attempt.error) attempt = std::move(shifted);
+  // Another position of the lattice helps where the count jumps by whole rows of a thin outline, or where the lattice
+  // meets the outline badly.
+  std::optional<Triangulated> best;
+  for (const Vec2& shift : {Vec2(0, 0), Vec2(0.3, 0.4), Vec2(0.6, 0.2), Vec2(0.15, 0.75)}) {
+    Triangulated candidate = triangulate(unit, common::area(unit), nodes, shift);
+    if (!best || candidate.better_than(*best)) best = std::move(candidate);
+    if (best->count_error <= kCountTolerance && best->worst_cosine <= kGoodCosine) break;
   }
-  std::vector<Vec2>& points = attempt.placement.points;
-  const std::size_t boundary = attempt.placement.on_edge.size();
-  auto triangles = smooth(points, static_cast<int>(boundary), attempt.size, kSmoothingPasses);
+
+  std::vector<Vec2> points = std::move(best->placement.points);
+  const std::size_t boundary = best->placement.on_edge.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i < boundary) {
-      const auto& [edge, t] = attempt.placement.on_edge[i];
+      const auto& [edge, t] = best->placement.on_edge[i];
       const Vec2& from = outline[edge];
       points[i] = t == 0 ? from : Vec2(from + t * (outline[(edge + 1) % outline.size()] - from));
     } else {
       points[i] = center + scale * points[i];
     }
   }
-  return connect(std::move(points), std::move(triangles));
+  return connect(std::move(points), std::move(best->triangles));
 }
 
 }  // namespace xfem
