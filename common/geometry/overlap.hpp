@@ -11,7 +11,9 @@ namespace common {
 /// `chord_midpoint` its middle. In general (four or more crossings) the chord vector is the sum of the pieces of a's
 /// boundary inside b; it is the gradient of the overlap area, dA/d(position of b) = -width * normal.
 /// Full inclusion has no crossing: the normal is the centre line from a to b ((1, 0) if the centres coincide),
-/// width = sqrt(area). Everywhere area / width <= sqrt(area): a smaller width is raised to sqrt(area).
+/// width = sqrt(area). The same holds where the chord vanishes (below 1e-12 sqrt(area)): identical polygons, inclusion
+/// with a vertex on the boundary, bars that cross symmetrically (these keep their 4 crossings). Everywhere area / width
+/// <= sqrt(area): a smaller width is raised to sqrt(area).
 struct Overlap {
   double area = 0;                     ///< [m^2]; 0: no overlap, and nothing below is set
   double width = 0;                    ///< b of the contact laws [m]
