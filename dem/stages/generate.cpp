@@ -17,8 +17,8 @@ constexpr double kTwoPi = 6.283185307179586;
 /// Steps of this size (modulo 1) fill the unit interval evenly, whatever their number.
 constexpr double kGoldenFraction = 0.6180339887498949;
 /// Share of the circle that solids fill in the first attempt; random placement jams a little above it.
-constexpr double kFirstSolidFraction = 0.5;
-constexpr int kTrials = 1000;
+constexpr double kFirstSolidFraction = 0.58;
+constexpr int kTrials = 10000;
 constexpr double kGrowth = 1.02;
 
 /// Diameter 1, centroid at the origin, counter-clockwise.
