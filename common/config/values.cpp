@@ -69,8 +69,9 @@ std::string print_number(double number) {
   const int shift = ((exponent % 3) + 3) % 3;
   while (digits.size() < static_cast<std::size_t>(shift) + 2) digits += '0';
   const int printed = exponent - shift;
-  return (number < 0 ? "-" : "") + digits.substr(0, shift + 1) + '.' + digits.substr(shift + 1) +
-         (printed < 0 ? "e" : "e+") + std::to_string(printed);
+  std::string result = number < 0 ? "-" : "";
+  result.append(digits, 0, shift + 1).append(".").append(digits, shift + 1);
+  return result.append(printed < 0 ? "e" : "e+").append(std::to_string(printed));
 }
 
 std::string in_quotes(std::string_view text) {
