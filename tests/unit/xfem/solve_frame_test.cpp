@@ -1,0 +1,184 @@
+#include "xfem/solve_frame.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "common/error.hpp"
+#include "sample_frame.hpp"
+#include "xfem/crack_state.hpp"
+
+using common::ParticleStatus;
+using common::Vec2;
+
+namespace {
+
+std::string payload(const common::Split& split) {
+  const sample::Directory directory("payload");
+  common::Split copy = split;
+  return common::write_split(directory / "split.h5", copy, {}).payload_hash;
+}
+
+int count(const common::Split& split, ParticleStatus status) {
+  return static_cast<int>(std::count(split.particles.status.begin(), split.particles.status.end(), status));
+}
+
+/// The same particles a frame later, broken ones replaced by their fragments, forces grown by `factor`.
+common::Frame next_frame(const common::Frame& frame, const common::Split& split, double factor) {
+  common::Frame next;
+  next.frame = frame.frame + 1;
+  next.next_id = frame.next_id;
+  const std::set<std::int64_t> broken(split.broken.parent.begin(), split.broken.parent.end());
+  const common::Particles& p = frame.particles;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (!broken.count(p.id[i])) {
+      next.next_id = p.id[i];
+      const auto outline = p.outline(i);
+      sample::add_particle(next, {outline.begin(), outline.end()}, p.position[i], p.angle[i], p.boundary[i]);
+    }
+  for (std::size_t f = 0; f < split.fragments.id.size(); ++f) {
+    common::Polygon outline(split.fragments.vertices.begin() + split.fragments.vertex_offset[f],
+                            split.fragments.vertices.begin() + split.fragments.vertex_offset[f + 1]);
+    const Vec2 c = common::centroid(outline);
+    for (Vec2& v : outline) v -= c;
+    next.next_id = split.fragments.id[f];
+    sample::add_particle(next, outline, {100.0 + static_cast<double>(f), 0}, 0, false);
+  }
+  for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
+    if (broken.count(frame.contacts.b[c])) continue;
+    next.contacts.a.push_back(frame.contacts.a[c]);
+    next.contacts.b.push_back(frame.contacts.b[c]);
+    next.contacts.point.push_back(frame.contacts.point[c]);
+    next.contacts.force.push_back(factor * frame.contacts.force[c]);
+  }
+  return next;
+}
+
+}  // namespace
+
+TEST_CASE("statuses follow from boundary, size and load") {
+  const common::Frame frame = sample::frame();
+  xfem::FrameSolver solver(sample::scene(), 1);
+  const common::Split split = solver.solve(frame, nullptr);
+  REQUIRE(split.particles.id == frame.particles.id);
+  for (int wall = 0; wall < sample::kWalls; ++wall) {
+    CHECK(split.particles.status[wall] == ParticleStatus::not_breakable);
+    CHECK(std::isnan(split.particles.min_safety_factor[wall]));
+  }
+  CHECK(split.particles.status[sample::kSmall] == ParticleStatus::not_breakable);
+  CHECK(split.particles.status[sample::kUnloaded] == ParticleStatus::intact);
+  CHECK(std::isinf(split.particles.min_safety_factor[sample::kUnloaded]));
+  CHECK(split.particles.status[sample::kGentle] == ParticleStatus::intact);
+  CHECK(split.particles.min_safety_factor[sample::kGentle] > 10);
+  CHECK(count(split, ParticleStatus::refused) == 0);
+  CHECK(count(split, ParticleStatus::broken) >= 4);
+  CHECK(split.work.solved == 1 + sample::kCrushed);
+  CHECK(split.frame == frame.frame);
+  CHECK(solver.warnings().empty());
+}
+
+TEST_CASE("a frame without contacts leaves every particle unloaded") {
+  common::Frame frame = sample::frame();
+  frame.contacts = {};
+  const common::Split split = xfem::FrameSolver(sample::scene(), 2).solve(frame, nullptr);
+  for (std::size_t i = sample::kWalls; i < frame.particles.size(); ++i) {
+    if (static_cast<int>(i) == sample::kSmall) continue;
+    CHECK(split.particles.status[i] == ParticleStatus::intact);
+    CHECK(std::isinf(split.particles.min_safety_factor[i]));
+    CHECK(split.particles.mean_stress[i] == std::array<double, 3>{0, 0, 0});
+  }
+}
+
+TEST_CASE("mean stress is the virial of the contact forces in world axes") {
+  const common::Frame frame = sample::frame();
+  const common::Split split = xfem::FrameSolver(sample::scene(), 2).solve(frame, nullptr);
+  for (std::size_t i = sample::kWalls; i < frame.particles.size(); ++i) {
+    double xx = 0, yy = 0, xy = 0;
+    for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
+      if (frame.contacts.b[c] != frame.particles.id[i]) continue;
+      const Vec2 arm = frame.contacts.point[c] - frame.particles.position[i], force = frame.contacts.force[c];
+      xx -= force.x() * arm.x();
+      yy -= force.y() * arm.y();
+      xy -= 0.5 * (force.x() * arm.y() + force.y() * arm.x());
+    }
+    const double area = common::area(frame.particles.outline(i)), size = std::abs(xx) + std::abs(yy);
+    INFO("particle " << i);
+    CHECK(std::abs(split.particles.mean_stress[i][0] * area - xx) <= 1e-9 * size);
+    CHECK(std::abs(split.particles.mean_stress[i][1] * area - yy) <= 1e-9 * size);
+    CHECK(std::abs(split.particles.mean_stress[i][2] * area - xy) <= 1e-9 * size);
+  }
+}
+
+TEST_CASE("fragments fill their parents, take ids in order and stand left of the path first") {
+  const common::Frame frame = sample::frame();
+  const common::Split split = xfem::FrameSolver(sample::scene(), 1).solve(frame, nullptr);
+  REQUIRE(split.broken.parent.size() >= 4);
+  REQUIRE(split.fragments.id.size() == 2 * split.broken.parent.size());
+  CHECK(std::is_sorted(split.broken.parent.begin(), split.broken.parent.end()));
+  for (std::size_t m = 0; m < split.broken.parent.size(); ++m) {
+    const auto parent = static_cast<std::size_t>(split.broken.parent[m]);  // ids are indices here
+    const auto& path = split.broken.path[m];
+    double sum = 0;
+    for (std::size_t f : {2 * m, 2 * m + 1}) {
+      CHECK(split.fragments.id[f] == frame.next_id + static_cast<std::int64_t>(f));
+      CHECK(split.fragments.parent[f] == split.broken.parent[m]);
+      const common::Polygon outline(split.fragments.vertices.begin() + split.fragments.vertex_offset[f],
+                                    split.fragments.vertices.begin() + split.fragments.vertex_offset[f + 1]);
+      CHECK(common::outline_defect(outline).empty());
+      sum += common::area(outline);
+      const double side = common::cross(path[1] - path[0], common::centroid(outline) - path[0]);
+      CHECK((f == 2 * m ? side > 0 : side < 0));
+    }
+    const double whole = common::area(frame.particles.outline(parent));
+    CHECK(std::abs(sum - whole) <= 1e-12 * whole);
+    // The path of a broken particle is no crack of anybody.
+    CHECK(std::count(split.cracks.particle.begin(), split.cracks.particle.end(), split.broken.parent[m]) == 0);
+  }
+  common::Frame foreign = frame;
+  foreign.next_id = 0;
+  CHECK(xfem::FrameSolver(sample::scene(), 1).solve(foreign, nullptr).fragments.id[0] == frame.particles.id.back() + 1);
+}
+
+TEST_CASE("the split is the same for any number of threads, with and without cached models") {
+  const common::Frame frame = sample::frame();
+  xfem::FrameSolver one(sample::scene(), 1), two(sample::scene(), 2);
+  const common::Split first = one.solve(frame, nullptr);
+  const std::string expected = payload(first);
+  CHECK(payload(two.solve(frame, nullptr)) == expected);
+  CHECK(one.counts().at("models_built") == 1 + sample::kCrushed);
+  CHECK(payload(one.solve(frame, nullptr)) == expected);
+  CHECK(one.counts().at("models_built") == 0);
+
+  // The next frame, through a solver that knows the particles and through one that does not.
+  const common::Frame next = next_frame(frame, first, 1.05);
+  CHECK(payload(one.solve(next, &first)) == payload(xfem::FrameSolver(sample::scene(), 2).solve(next, &first)));
+  CHECK(one.counts().at("models_built") == 0);
+}
+
+TEST_CASE("cracks persist: they are kept without load and start the next analysis") {
+  const common::Frame frame = sample::frame();
+  xfem::FrameSolver solver(sample::scene(), 1);
+  const common::Split first = solver.solve(frame, nullptr);
+  REQUIRE(count(first, ParticleStatus::arrested) >= 1);
+  common::Frame next = next_frame(frame, first, 1);
+  next.contacts = {};
+  const common::Split second = solver.solve(next, &first);
+  const xfem::CrackState before = xfem::stored_cracks(first), after = xfem::stored_cracks(second);
+  REQUIRE(before.size() == after.size());
+  for (const auto& [id, cracks] : before) {
+    REQUIRE(after.at(id).size() == cracks.size());
+    CHECK(after.at(id)[0].points.size() == cracks[0].points.size());
+    const auto i = std::lower_bound(next.particles.id.begin(), next.particles.id.end(), id) - next.particles.id.begin();
+    CHECK(second.particles.status[i] == ParticleStatus::arrested);
+  }
+}
+
+TEST_CASE("an unbalanced particle is named in a warning and still analysed") {
+  common::Frame frame = sample::frame();
+  frame.contacts.force[0] *= 1.5;
+  xfem::FrameSolver solver(sample::scene(), 1);
+  solver.solve(frame, nullptr);
+  REQUIRE(solver.warnings().size() == 1);
+  CHECK_THAT(solver.warnings()[0], Catch::Contains("frame 7") && Catch::Contains("of 1 of") &&
+                                       Catch::Contains("worst: particle " + std::to_string(frame.contacts.b[0])));
+}
