@@ -52,11 +52,17 @@ void check_previous(const common::Split& previous, const common::Frame& frame, c
 CrackState stored_cracks(const common::Split& split) {
   CrackState state;
   const auto& stored = split.cracks;
+  // Edges and tip states may be absent in a file made elsewhere: then the geometry alone counts.
+  const bool on_edges = !stored.edge.empty() && !stored.edge_fraction.empty();
   for (std::size_t k = 0; k < stored.particle.size(); ++k) {
     Crack crack;
-    for (std::int64_t p = stored.point_offset[k]; p < stored.point_offset[k + 1]; ++p)
-      crack.points.push_back({{stored.edge[p][0], stored.edge[p][1]}, stored.edge_fraction[p], stored.points[p]});
-    crack.tips = {static_cast<TipState>(stored.tip_state[k][0]), static_cast<TipState>(stored.tip_state[k][1])};
+    for (std::int64_t p = stored.point_offset[k]; p < stored.point_offset[k + 1]; ++p) {
+      CrackPoint point{{-1, -1}, 0, stored.points[p]};
+      if (on_edges) point = {{stored.edge[p][0], stored.edge[p][1]}, stored.edge_fraction[p], stored.points[p]};
+      crack.points.push_back(point);
+    }
+    if (!stored.tip_state.empty())
+      crack.tips = {static_cast<TipState>(stored.tip_state[k][0]), static_cast<TipState>(stored.tip_state[k][1])};
     state[stored.particle[k]].push_back(std::move(crack));
   }
   return state;

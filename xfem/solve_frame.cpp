@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <limits>
@@ -55,6 +56,17 @@ std::array<double, 3> to_world(const Stress& s, const common::Rotation& rotation
   const double c = rotation.cos, n = rotation.sin;
   return {c * c * s.xx + n * n * s.yy - 2 * c * n * s.xy, n * n * s.xx + c * c * s.yy + 2 * c * n * s.xy,
           c * n * (s.xx - s.yy) + (c * c - n * n) * s.xy};
+}
+
+/// Why a result cannot be written down; empty if it can.
+std::string defect_of(const BreakageResult& result) {
+  if (!std::isfinite(result.mean_stress.xx + result.mean_stress.yy + result.mean_stress.xy))
+    return "the stress is not finite";
+  if (result.status != common::ParticleStatus::broken) return {};
+  if (!result.path) return "broken without a path";
+  for (const Polygon* fragment : {&result.left, &result.right})
+    if (const std::string defect = common::outline_defect(*fragment); !defect.empty()) return "a fragment: " + defect;
+  return {};
 }
 
 std::vector<Case> gather_loads(const common::Frame& frame, const std::vector<common::Rotation>& rotation) {
@@ -175,6 +187,7 @@ void FrameSolver::Implementation::analyse_all(std::vector<Case>& cases) {
           if (std::optional<Crack> crack = crack_on_mesh(model.elastic.mesh(), stored))
             cracks.push_back(std::move(*crack));
       particle.result = analyse(model, particle.loads, cracks, parameters);
+      particle.failure = defect_of(particle.result);
     } catch (const common::Error& error) {
       particle.failure = error.what();
     } catch (...) {

@@ -1,0 +1,92 @@
+#include "xfem/lab/laboratory.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "../../../unit/xfem/sample_frame.hpp"
+#include "common/error.hpp"
+#include "xfem/lab/report.hpp"
+
+namespace {
+
+common::LabTest laboratory(common::LabTestKind kind, int nodes) {
+  common::LabTest test;
+  test.test = kind;
+  test.mesh_nodes = nodes;
+  test.breakage.minimum_area = 0;
+  return test;
+}
+
+}  // namespace
+
+TEST_CASE("a block between smooth platens first fails at its uniaxial strength") {
+  for (int nodes : {75, 300}) {
+    const common::LabTest test = laboratory(common::LabTestKind::uniaxial, nodes);
+    const xfem::LabSetup setup = xfem::uniaxial_test(test);
+    const xfem::LabResult result = xfem::run(setup, test);
+    CHECK(std::abs(result.first_failure_load / (150e6 * test.specimen.width) - 1) < 1e-9);
+    for (const xfem::Stress& s : result.element_stress) {
+      CHECK(std::abs(s.yy - 150e6) < 150e6 * 1e-9);
+      CHECK(std::abs(s.xx) + std::abs(s.xy) < 150e6 * 1e-9);
+    }
+    CHECK(result.breakage.failure_mode == xfem::FailureMode::shear);
+  }
+}
+
+TEST_CASE("a disc under two forces first fails near Hondros' stress at its centre") {
+  for (const auto& [nodes, ratio] : {std::pair{75, 1.10}, {300, 1.05}}) {
+    const common::LabTest test = laboratory(common::LabTestKind::brazilian, nodes);
+    const xfem::LabSetup setup = xfem::brazilian_test(test);
+    const double tensile = std::numbers::pi * 0.5 * 6e6 / 2;
+    CHECK(setup.theory_load == Approx(tensile * 50 / (25 + std::sqrt(25.0 * 25 + 64))).epsilon(1e-14));
+    const xfem::LabResult result = xfem::run(setup, test);
+    INFO(nodes << " nodes: first failure " << result.first_failure_load / setup.theory_load << ", breakage "
+               << result.breakage_load / setup.theory_load);
+    CHECK(std::abs(result.first_failure_load / setup.theory_load - ratio) < 0.06);
+    CHECK(result.breakage.failure_mode == xfem::FailureMode::tension);
+    CHECK(result.breakage.status == common::ParticleStatus::broken);
+    CHECK(result.breakage_load >= result.first_failure_load);
+    CHECK(*xfem::fracture_angle_degrees(result.breakage) < 10);
+  }
+}
+
+TEST_CASE("strength scales with the rock's and not with its stiffness") {
+  common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  const double load = xfem::run(xfem::brazilian_test(test), test).first_failure_load;
+  test.material.sigma_ci *= 2;
+  test.material.young_modulus *= 3;
+  test.material.poisson_ratio = 0.3;
+  CHECK(xfem::run(xfem::brazilian_test(test), test).first_failure_load == Approx(2 * load).epsilon(0.02));
+}
+
+TEST_CASE("a laboratory test leaves a summary with the agreed keys, a file and a figure") {
+  const sample::Directory directory("lab");
+  const common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  xfem::run_lab_test(test, directory / "out");
+  std::ifstream stream(directory / "out" / "summary.json");
+  const auto summary = nlohmann::json::parse(stream);
+  for (const char* key :
+       {"schema", "test", "specimen", "mesh", "analytical", "first_failure_load", "breakage_load", "ratio",
+        "failure_mode", "crack_path", "fracture_angle_deg", "fragments", "growth_steps", "status", "seconds"})
+    CHECK(summary.contains(key));
+  CHECK(summary["test"] == "brazilian");
+  CHECK(summary["ratio"].get<double>() ==
+        summary["breakage_load"].get<double>() / summary["analytical"]["breakage_load"].get<double>());
+  double fragments = 0;
+  for (const auto& fragment : summary["fragments"]) fragments += fragment["area"].get<double>();
+  CHECK(fragments == Approx(summary["specimen"]["area"].get<double>()).epsilon(1e-12));
+  CHECK(std::filesystem::file_size(directory / "out" / "result.h5") > 0);
+  CHECK(std::filesystem::file_size(directory / "out" / "specimen.svg") > 0);
+}
+
+TEST_CASE("laboratory tests that make no sense are refused") {
+  common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  test.specimen.sides = 31;
+  CHECK_THROWS_WITH(xfem::brazilian_test(test), Catch::Contains("found 31, expected an even number"));
+  test = laboratory(common::LabTestKind::uniaxial, 75);
+  test.loading.platen_friction = 0.3;
+  CHECK_THROWS_WITH(xfem::uniaxial_test(test), Catch::Contains("smooth platens"));
+}
