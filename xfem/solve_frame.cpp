@@ -271,7 +271,9 @@ void FrameSolver::Implementation::record(const common::Frame& frame, const std::
     split.particles.status.push_back(result.status);
     split.particles.mean_stress.push_back(to_world(result.mean_stress, rotation[i]));
     split.particles.min_safety_factor.push_back(result.min_safety_factor);
-    split.particles.failure_mode.push_back(result.failure_mode);
+    const bool failed =
+        result.status == common::ParticleStatus::arrested || result.status == common::ParticleStatus::broken;
+    split.particles.failure_mode.push_back(failed ? result.failure_mode : FailureMode::none);
     if (result.status == common::ParticleStatus::broken)
       record_fragments(frame, i, particle, next_id, handed_down, split);
     else
