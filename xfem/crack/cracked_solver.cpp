@@ -217,16 +217,4 @@ std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment&
   return stress;
 }
 
-Stress mean_stress(const Mesh& mesh, std::span<const Stress> stress) {
-  Stress sum;
-  double area = 0;
-  for (std::size_t t = 0; t < stress.size(); ++t) {
-    sum.xx += mesh.areas[t] * stress[t].xx;
-    sum.yy += mesh.areas[t] * stress[t].yy;
-    sum.xy += mesh.areas[t] * stress[t].xy;
-    area += mesh.areas[t];
-  }
-  return {sum.xx / area, sum.yy / area, sum.xy / area};
-}
-
 }  // namespace xfem

@@ -60,7 +60,4 @@ class CrackedSolver {
 std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment& enrichment, const Eigen::VectorXd& u,
                                      const Eigen::VectorXd& q);
 
-/// Area-weighted mean over all elements.
-Stress mean_stress(const Mesh& mesh, std::span<const Stress> stress);
-
 }  // namespace xfem
