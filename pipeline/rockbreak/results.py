@@ -48,6 +48,17 @@ class Results:
         from .summary import summarize
         return summarize(self)
 
+    @cached_property
+    def stages(self):
+        """(name, frame number) at the start, at the peak and at the end; fewer if they coincide."""
+        peak = nearest(self.frames, self.summary["peak_strain"] or 0.0)
+        rows = {len(self.frames) - 1: "end", peak: "peak", 0: "start"}
+        return [(rows[row], self.frames[row]["frame"]) for row in sorted(rows)]
+
+    def stage_frame(self, stage):
+        """Its frame number; the last one if that stage has none of its own."""
+        return dict(self.stages).get(stage, self.frames[-1]["frame"])
+
     def ledger(self):
         """Read anew each time: it grows while a report is made."""
         return read_ledger(self.directory.ledger_file)
@@ -61,6 +72,8 @@ class Results:
 
 def frame_table(directory):
     """Number, step, axial strain, particles, contacts, solid area [m^2] and the final flag of every frame."""
+    if not directory.path.is_dir():
+        raise RockbreakError(BAD_INPUT, f"{directory.path}: no such directory; expected a run directory")
     numbers = directory.frame_numbers()
     if not numbers:
         raise RockbreakError(BAD_INPUT, f"{directory.path}: found no frames/*.h5; expected a run directory with at "
@@ -81,4 +94,5 @@ def frame_table(directory):
 
 
 def nearest(frames, strain):
+    """Row of the frame nearest to an axial strain."""
     return min(range(len(frames)), key=lambda i: abs(frames[i]["axial_strain"] - strain))

@@ -39,7 +39,7 @@ def summarize(results):
         "void_ratios": {
             name: {kind: at(history, f"void_ratio_{kind}", row) for kind in ("e1", "e2", "e4")}
             for name, row in (("initial", 0), ("final", -1))},
-        "particles_at_strain": particles_at_strain(frames, broken),
+        "particles_at_strain": particles_at_strain(frames),
         "unbalanced_force_at_rest": at(history, "unbalanced_force", 0),
         "lateral_stress_error_rms": lateral_stress_error(shear, pressure),
         "contacts_initial": first["contacts"],
@@ -83,19 +83,14 @@ def write_summary(directory, summary):
     os.replace(temporary, directory.summary_file)
 
 
-def particles_at_strain(frames, broken):
-    """Number of particles once the splits of all frames up to a strain are applied (each adds one particle); the
-    split of the final frame never is."""
+def particles_at_strain(frames):
+    """Number of particles in the frame nearest to each reported strain: the splits of all frames before are applied."""
     spacing = np.median(np.diff([row["axial_strain"] for row in frames])) if len(frames) > 1 else 0.0
     end = frames[-1]["axial_strain"]
-    strains = [(s, f"{s:.2f}") for s in REPORTED_STRAINS if s <= end + spacing / 2]
-    if abs(end - strains[-1][0]) > spacing / 2:
-        strains.append((end, f"{end:.3f}"))
-    counts = {}
-    for strain, key in strains:
-        applied = [row["frame"] for row in frames
-                   if row["axial_strain"] <= strain + spacing / 2 and not row["final"]]
-        counts[key] = frames[0]["particles"] + sum(broken.get(k, 0) for k in applied)
+    counts = {f"{strain:.2f}": frames[nearest(frames, strain)]["particles"]
+              for strain in REPORTED_STRAINS if strain <= end + spacing / 2}
+    if all(abs(end - float(strain)) > spacing / 2 for strain in counts):
+        counts[f"{end:.3f}"] = frames[-1]["particles"]
     return counts
 
 

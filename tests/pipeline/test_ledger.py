@@ -1,0 +1,54 @@
+import json
+
+import pytest
+
+from rockbreak.ledger import Ledger, read_ledger, seconds_per_phase
+
+
+def test_events_come_back_in_order(tmp_path):
+    with Ledger(tmp_path / "run.jsonl") as ledger:
+        ledger.write("frame", frame=0, seconds={"dem": 1.5})
+        ledger.write("split", frame=0, broken=3)
+    with Ledger(tmp_path / "run.jsonl") as ledger:
+        ledger.write("end", code=0)
+    events = read_ledger(tmp_path / "run.jsonl")
+    assert [event["event"] for event in events] == ["frame", "split", "end"]
+    assert events[1]["broken"] == 3 and all(event["time"] > 1e9 for event in events)
+
+
+def test_every_event_is_on_disk_at_once(tmp_path):
+    ledger = Ledger(tmp_path / "run.jsonl")
+    ledger.write("frame", frame=0)
+    assert json.loads((tmp_path / "run.jsonl").read_text())["frame"] == 0
+    ledger.close()
+
+
+@pytest.mark.parametrize("kept", [1, 5, 20])
+def test_a_half_written_last_line_is_left_out_and_cut_off_before_the_next_event(tmp_path, kept):
+    path = tmp_path / "run.jsonl"
+    with Ledger(path) as ledger:
+        ledger.write("frame", frame=0)
+        ledger.write("frame", frame=1)
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text(lines[0] + lines[1][:kept])
+    assert [event["frame"] for event in read_ledger(path)] == [0]
+    with Ledger(path) as ledger:
+        ledger.write("frame", frame=2)
+    assert [event["frame"] for event in read_ledger(path)] == [0, 2]
+
+
+def test_a_damaged_line_in_the_middle_is_named(tmp_path):
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"event": "frame"}\n{"eve\n{"event": "end"}\n')
+    with pytest.raises(ValueError, match="run.jsonl:2"):
+        read_ledger(path)
+
+
+def test_a_missing_ledger_has_no_events(tmp_path):
+    assert read_ledger(tmp_path / "run.jsonl") == []
+
+
+def test_seconds_are_summed_per_phase_over_all_resumptions():
+    events = [{"event": "frame", "seconds": {"dem": 1.0}}, {"event": "split", "seconds": {"xfem": 0.5, "handover": 0.1}},
+              {"event": "end"}, {"event": "frame", "seconds": {"dem": 2.0}}, {"event": "report", "seconds": {"report": 4}}]
+    assert seconds_per_phase(events) == {"dem": 3.0, "xfem": 0.5, "handover": 0.1, "report": 4.0, "total": 7.6}

@@ -1,0 +1,99 @@
+"""The page: it builds from one run and from several, holds what it shows, and asks nothing of a network."""
+import re
+import subprocess
+
+import pytest
+
+import synthetic
+from conftest import REPOSITORY
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    return (synthetic.write_run(folder / "breakable <1>", frames=9),
+            synthetic.write_run(folder / "solid", frames=9, breakable=False))
+
+
+def report(*arguments):
+    return subprocess.run([REPOSITORY / "pipeline" / "report", *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def page(runs):
+    process = report(runs[0])
+    assert process.returncode == 0, process.stderr
+    assert process.stdout == f"{runs[0] / 'report.html'}\n"
+    return (runs[0] / "report.html").read_text()
+
+
+def test_nothing_on_the_page_comes_from_elsewhere(page):
+    sources = re.findall(r'(?:src|href|action)="([^"]*)"|url\(([^)]*)\)', page)
+    assert len(sources) > 100
+    assert [one for one in sources if not re.match("data:image/png;base64,|#", one[0] or one[1])] == []
+    links = set(re.findall(r"https?://[^\"'<>\s]+", page))
+    assert links <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}, "namespaces only"
+    assert "<script" not in page and "@import" not in page
+
+
+def test_every_figure_stands_on_the_page_and_in_the_folder(page, runs):
+    assert page.count("<svg") == 12 and page.count("data:image/png;base64,") == 5
+    names = {file.stem for file in (runs[0] / "figures").glob("*.png")}
+    assert {"deviator", "volumetric_strain", "friction_angle", "particles", "energy", "servo_error", "phases",
+            "force_chains_start", "force_chains_peak", "force_chains_end", "displacements_end"} <= names
+    for file in (runs[0] / "figures").glob("*.png"):
+        assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_ids_of_the_figures_do_not_clash(page):
+    ids = re.findall(r'\bid="(DejaVu[^"]*|[^"]*-DejaVu[^"]*|[mp][0-9a-f]{10})"', page)
+    assert len(ids) == len(set(ids))
+
+
+def test_names_and_warnings_are_escaped(page):
+    assert "breakable &lt;1&gt;" in page and "breakable <1>" not in page
+    assert "the servo &lt;saturated&gt; once" in page
+
+
+def test_the_resolved_case_is_shown(page):
+    assert "confining_pressure: 2000000.0" in page
+
+
+def test_several_runs_are_compared(runs):
+    process = report(*runs)
+    assert process.returncode == 0, process.stderr
+    page = (runs[0] / "comparison.html").read_text()
+    assert "Comparison of 2 biaxial tests" in page and page.count("<img") == 6
+    assert (runs[0] / "figures" / "comparison_deviator.png").exists()
+
+
+def test_the_papers_numbers_stand_beside_its_own_scene_only(runs, tmp_path):
+    run = synthetic.write_run(tmp_path / "paper", frames=4)
+    assert "Raisianzadeh" not in (runs[0] / "report.html").read_text()
+    case = run / "case.yaml"
+    case.write_text(case.read_text().replace("particles: 48", "particles: 1194"))
+    assert report(run).returncode == 0
+    page = (run / "report.html").read_text()
+    assert "Raisianzadeh et al. (2019)" in page and "<td>1194</td>" in page
+
+
+def test_an_unfinished_run_is_reported_as_such(tmp_path):
+    run = synthetic.write_run(tmp_path / "r", frames=4)
+    (run / "frames" / "000003.h5").unlink()
+    assert report(run).returncode == 0
+    assert "has not reached its final frame" in (run / "report.html").read_text()
+
+
+@pytest.mark.parametrize("spoil, message", [
+    (lambda run: None, "no such directory"),
+    (lambda run: synthetic.write_run(run, frames=2) and [f.unlink() for f in (run / "frames").iterdir()],
+     "found no frames"),
+    (lambda run: synthetic.write_run(run, frames=2) and (run / "case.yaml").write_text("- 1\n"), "mapping of keys"),
+    (lambda run: synthetic.write_run(run, frames=2) and (run / "frames" / "000001.h5").write_bytes(b"half"),
+     "000001.h5"),
+])
+def test_what_cannot_be_reported_gets_a_message_and_an_exit_code(tmp_path, spoil, message):
+    run = tmp_path / "r"
+    spoil(run)
+    process = report(run)
+    assert process.returncode in (2, 4) and message in process.stderr and "Traceback" not in process.stderr
