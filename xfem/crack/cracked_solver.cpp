@@ -61,38 +61,6 @@ const CrackedSolver::Column& CrackedSolver::column(const EnrichmentFunction& fun
   return entry;
 }
 
-Eigen::VectorXd CrackedSolver::enriched_forces(const Enrichment& enrichment) const {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(enrichment.functions.size()));
-  if (loads_.empty()) return forces;
-  const Mesh& mesh = model_->mesh();
-  const BodyForce body = inertia_relief(mesh, loads_);
-  for (const CutElement& element : enrichment.cut) {
-    const auto& triangle = mesh.triangles[element.element];
-    const Vec2 center = (mesh.nodes[triangle[0]] + mesh.nodes[triangle[1]] + mesh.nodes[triangle[2]]) / 3;
-    for (const CutElement::Term& term : element.terms) {
-      const Vec2& gradient = model_->gradients()[element.element].gradient[term.local];
-      Vec2 sum = Vec2::Zero();
-      for (const ElementPart& part : element.parts) {
-        const double jump = enrichment.jump(term, part);
-        if (jump == 0) continue;
-        sum += jump * integrate_body_force(part.outline, part.area, gradient, center, body);
-      }
-      // A load on the cut edge of a mouth: only beyond the mouth, as seen from the function's node, is H - H_J not 0.
-      const CrackSegment& segment = enrichment.segments[element.segments[term.slot]];
-      for (const CrackPoint* end : {&segment.first, &segment.last}) {
-        const int node = triangle[term.local];
-        if ((end->edge[0] != node && end->edge[1] != node) || !on_boundary(mesh, *end)) continue;
-        const bool at_start = end->edge[0] == node;
-        const double jump = -2.0 * enrichment.functions[term.function].side;
-        sum += jump * edge_force_beyond(mesh, end->edge, end->fraction, at_start, loads_, patch_);
-      }
-      forces[2 * term.function] += sum.x();
-      forces[2 * term.function + 1] += sum.y();
-    }
-  }
-  return forces;
-}
-
 CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
   const Mesh& mesh = model_->mesh();
   const Eigen::Matrix3d d = model_->constants().matrix();
@@ -142,7 +110,7 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
   for (int f = 0; f < functions; ++f) {
     columns[f] = &column(enrichment.functions[f], {coupling[f].begin(), coupling[f].end()});
   }
-  Eigen::VectorXd right = enriched_forces(enrichment);
+  Eigen::VectorXd right = enriched_forces(*model_, enrichment, loads_, patch_);
   for (int f = 0; f < functions; ++f) {
     for (int a = 0; a < 2; ++a) {
       const int row = 2 * f + a;
@@ -191,6 +159,38 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
   }
   state.stress = cracked_stresses(*model_, enrichment, state.u, state.q);
   return state;
+}
+
+Eigen::VectorXd enriched_forces(const IntactModel& model, const Enrichment& enrichment, std::span<const Load> loads,
+                                double patch) {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(enrichment.functions.size()));
+  if (loads.empty()) return forces;
+  const Mesh& mesh = model.mesh();
+  const BodyForce body = inertia_relief(mesh, loads, patch);
+  for (const CutElement& element : enrichment.cut) {
+    const auto& triangle = mesh.triangles[element.element];
+    const Vec2 center = (mesh.nodes[triangle[0]] + mesh.nodes[triangle[1]] + mesh.nodes[triangle[2]]) / 3;
+    for (const CutElement::Term& term : element.terms) {
+      const Vec2& gradient = model.gradients()[element.element].gradient[term.local];
+      Vec2 sum = Vec2::Zero();
+      for (const ElementPart& part : element.parts) {
+        const double jump = enrichment.jump(term, part);
+        if (jump == 0) continue;
+        sum += jump * integrate_body_force(part.outline, part.area, gradient, center, body);
+      }
+      // A load on the cut edge of a mouth: only beyond the mouth, as seen from the function's node, is H - H_J not 0.
+      const CrackSegment& segment = enrichment.segments[element.segments[term.slot]];
+      for (const CrackPoint* end : {&segment.first, &segment.last}) {
+        const int node = triangle[term.local];
+        if ((end->edge[0] != node && end->edge[1] != node) || !on_boundary(mesh, *end)) continue;
+        const double jump = -2.0 * enrichment.functions[term.function].side;
+        sum += jump * force_beyond_mouth(mesh, *end, node, loads, patch);
+      }
+      forces[2 * term.function] += sum.x();
+      forces[2 * term.function + 1] += sum.y();
+    }
+  }
+  return forces;
 }
 
 std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment& enrichment, const Eigen::VectorXd& u,

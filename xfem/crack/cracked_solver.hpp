@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <span>
 #include <utility>
@@ -46,7 +47,6 @@ class CrackedSolver {
     std::array<Eigen::VectorXd, 2> response;  ///< the two columns of W
   };
 
-  Eigen::VectorXd enriched_forces(const Enrichment& enrichment) const;
   const Column& column(const EnrichmentFunction& function, std::vector<Block> stiffness);
 
   const IntactModel* model_;
@@ -55,6 +55,11 @@ class CrackedSolver {
   Eigen::VectorXd u0_;
   std::map<std::pair<int, int>, Column> columns_;  ///< by crack and node
 };
+
+/// Forces on the enriched dofs (2 per function) [N]: the loads on cut boundary edges and the body force of the inertia
+/// relief, so that the virtual work of every enriched displacement is that of the true forces.
+Eigen::VectorXd enriched_forces(const IntactModel& model, const Enrichment& enrichment, std::span<const Load> loads,
+                                double patch = 0);
 
 /// Stress of each element under nodal displacements u and enriched dofs q: the area average over its parts.
 std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment& enrichment, const Eigen::VectorXd& u,

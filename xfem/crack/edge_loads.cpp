@@ -1,37 +1,23 @@
 #include "xfem/crack/edge_loads.hpp"
 
 #include <algorithm>
-#include <map>
+#include <vector>
 
 #include "common/geometry/vec2.hpp"
-#include "xfem/crack/path.hpp"
+#include "xfem/elasticity/stiffness.hpp"
 
 namespace xfem {
 namespace {
 
-/// Arc length of the start of every boundary edge, counter-clockwise from the edge that starts at `origin`.
-struct BoundaryLength {
-  BoundaryLength(const Mesh& mesh, int origin) {
-    std::map<int, int> next;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        if (mesh.neighbours[t][k] < 0) next[mesh.triangles[t][(k + 1) % 3]] = mesh.triangles[t][(k + 2) % 3];
-      }
-    }
-    int node = origin;
-    do {
-      start[node] = total;
-      total += (mesh.nodes[next[node]] - mesh.nodes[node]).norm();
-      node = next[node];
-    } while (node != origin && start.size() <= next.size());
-  }
-  std::map<int, double> start;  ///< by the edge's first node
-  double total = 0;
-};
+std::vector<Vec2> positions(const Mesh& mesh, std::span<const int> nodes) {
+  std::vector<Vec2> points;
+  for (const int node : nodes) points.push_back(mesh.nodes[node]);
+  return points;
+}
 
 }  // namespace
 
-BodyForce inertia_relief(const Mesh& mesh, std::span<const Load> loads) {
+BodyForce inertia_relief(const Mesh& mesh, std::span<const Load> loads, double patch) {
   double area = 0;
   Vec2 first = Vec2::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -49,20 +35,15 @@ BodyForce inertia_relief(const Mesh& mesh, std::span<const Load> loads) {
       polar += mesh.areas[t] / 3 * (middle - center).squaredNorm();
     }
   }
-  Vec2 force = Vec2::Zero();
-  double moment = 0;
-  for (const Load& load : loads) {
-    force += load.force;
-    moment += common::cross(load.point - center, load.force);
-  }
-  return {center, -force / area, -moment / polar};
+  const std::vector<Vec2> loop = positions(mesh, boundary_loop(mesh));
+  return {center, rigid_acceleration(loop, boundary_forces(loop, loads, patch), area, center, polar)};
 }
 
 Vec2 integrate_body_force(PolygonView part, double area, const Vec2& gradient, const Vec2& element_center,
                           const BodyForce& body) {
   const auto value = [&](const Vec2& x) -> Vec2 {
     const double shape = 1.0 / 3 + gradient.dot(x - element_center);
-    return shape * (body.translation + body.rotation * common::perpendicular(x - body.center));
+    return -shape * (body.acceleration.linear + body.acceleration.angular * common::perpendicular(x - body.center));
   };
   Vec2 sum = Vec2::Zero();
   double covered = 0;
@@ -75,44 +56,24 @@ Vec2 integrate_body_force(PolygonView part, double area, const Vec2& gradient, c
   return covered != 0 ? Vec2(sum * (area / covered)) : Vec2::Zero();
 }
 
-Vec2 edge_force_beyond(const Mesh& mesh, const std::array<int, 2>& edge, double fraction, bool at_start,
-                       std::span<const Load> loads, double patch) {
-  const double length = (mesh.nodes[edge[1]] - mesh.nodes[edge[0]]).norm();
-  // Distance from node J along the edge, as a fraction: beyond the mouth means [mouth, 1], and N_J = 1 - distance.
-  const double mouth = at_start ? fraction : 1 - fraction;
-  const int node = edge[at_start ? 0 : 1];
+Vec2 force_beyond_mouth(const Mesh& mesh, const CrackPoint& mouth, int node, std::span<const Load> loads,
+                        double patch) {
+  // The mouth becomes a point of the loop, so that no share of a load straddles it.
+  const std::vector<int> nodes = boundary_loop(mesh);
+  std::vector<Vec2> loop = positions(mesh, nodes);
+  const int n = static_cast<int>(nodes.size());
+  int edge = 0;
+  while (std::minmax(nodes[edge], nodes[(edge + 1) % n]) != std::minmax(mouth.edge[0], mouth.edge[1])) ++edge;
+  loop.insert(loop.begin() + edge + 1, mouth.position);
+  const bool starts_at_node = nodes[edge] == node;
+  const int beyond = starts_at_node ? edge + 1 : edge;
+  // N_J falls linearly from its value at the mouth to 0 at the other end.
+  const double at_mouth = mouth.edge[0] == node ? 1 - mouth.fraction : mouth.fraction;
   Vec2 sum = Vec2::Zero();
-  if (patch <= 0) {
-    for (const Load& load : loads) {
-      const BoundaryPosition place = nearest_on_boundary(mesh, load.point);
-      if (std::minmax(place.edge[0], place.edge[1]) != std::minmax(edge[0], edge[1])) continue;
-      const double distance = place.edge[0] == node ? place.fraction : 1 - place.fraction;
-      if (distance > mouth) sum += (1 - distance) * load.force;
-    }
-    return sum;
-  }
-  const int element = edge_elements(mesh, edge)[0];
-  const int local = mesh.local_edge(element, edge[0], edge[1]);
-  const int origin = mesh.triangles[element][(local + 1) % 3];  // the edge starts here, counter-clockwise
-  const BoundaryLength boundary(mesh, origin);
   for (const Load& load : loads) {
-    const BoundaryPosition place = nearest_on_boundary(mesh, load.point);
-    const double edge_length = (mesh.nodes[place.edge[1]] - mesh.nodes[place.edge[0]]).norm();
-    const double middle = boundary.start.at(place.edge[0]) + place.fraction * edge_length;
-    const double spread = std::min(patch, boundary.total);
-    for (const double turn : {-boundary.total, 0.0, boundary.total}) {
-      double low = (middle + turn - spread / 2) / length;
-      double high = (middle + turn + spread / 2) / length;
-      if (node != origin) {
-        const double swap = 1 - low;
-        low = 1 - high;
-        high = swap;
-      }
-      low = std::max(low, mouth);
-      high = std::min(high, 1.0);
-      if (low >= high) continue;
-      // Integral of (1 - s) over [low, high] at the density length / spread.
-      sum += length / spread * (high - low) * (1 - (low + high) / 2) * load.force;
+    for (const BoundaryShare& share : boundary_shares(loop, load, patch)) {
+      if (share.edge != beyond) continue;
+      sum += at_mouth * (starts_at_node ? 1 - share.position : share.position) * share.weight * load.force;
     }
   }
   return sum;

@@ -12,9 +12,27 @@ namespace {
 
 using common::cross;
 
+/// Point of a boundary edge nearest to `position`, wherever on the boundary that is.
 CrackPoint mouth_near(const Mesh& mesh, const Vec2& position) {
-  const BoundaryPosition found = nearest_on_boundary(mesh, position);
-  return point_on_edge(mesh, found.edge[0], found.edge[1], found.fraction);
+  double best = -1;
+  std::array<int, 2> edge{-1, -1};
+  double fraction = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      if (mesh.neighbours[t][k] >= 0) continue;
+      const int a = mesh.triangles[t][(k + 1) % 3];
+      const int b = mesh.triangles[t][(k + 2) % 3];
+      const Vec2 along = mesh.nodes[b] - mesh.nodes[a];
+      const Vec2 away = position - mesh.nodes[a];
+      const double s = std::clamp(away.dot(along) / along.squaredNorm(), 0.0, 1.0);
+      const double distance = (away - s * along).squaredNorm();
+      if (best >= 0 && distance >= best) continue;
+      best = distance;
+      edge = {a, b};
+      fraction = s;
+    }
+  }
+  return point_on_edge(mesh, edge[0], edge[1], fraction);
 }
 
 /// Crossings of the polyline with the mesh edges, from triangle to triangle. A crossing that is undone by the next
@@ -100,26 +118,6 @@ std::array<int, 2> edge_elements(const Mesh& mesh, const std::array<int, 2>& edg
 
 bool on_boundary(const Mesh& mesh, const CrackPoint& point) {
   return edge_elements(mesh, point.edge)[1] < 0;
-}
-
-BoundaryPosition nearest_on_boundary(const Mesh& mesh, const Vec2& position) {
-  double best = -1;
-  BoundaryPosition found{{-1, -1}, 0};
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      if (mesh.neighbours[t][k] >= 0) continue;
-      const int a = mesh.triangles[t][(k + 1) % 3];
-      const int b = mesh.triangles[t][(k + 2) % 3];
-      const Vec2 along = mesh.nodes[b] - mesh.nodes[a];
-      const Vec2 away = position - mesh.nodes[a];
-      const double s = std::clamp(away.dot(along) / along.squaredNorm(), 0.0, 1.0);
-      const double distance = (away - s * along).squaredNorm();
-      if (best >= 0 && distance >= best) continue;
-      best = distance;
-      found = {{a, b}, s};
-    }
-  }
-  return found;
 }
 
 int segment_element(const Mesh& mesh, const CrackPoint& first, const CrackPoint& last) {

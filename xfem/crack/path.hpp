@@ -41,13 +41,6 @@ CrackPoint point_on_edge(const Mesh& mesh, int a, int b, double fraction);
 std::array<int, 2> edge_elements(const Mesh& mesh, const std::array<int, 2>& edge);
 bool on_boundary(const Mesh& mesh, const CrackPoint& point);
 
-/// Place on the boundary nearest to a position; the edge runs counter-clockwise, the lowest triangle on ties.
-struct BoundaryPosition {
-  std::array<int, 2> edge;
-  double fraction;  ///< 0 at edge[0], 1 at edge[1]
-};
-BoundaryPosition nearest_on_boundary(const Mesh& mesh, const Vec2& position);
-
 /// Triangle that holds both edges of two consecutive crack points; -1 if there is none.
 int segment_element(const Mesh& mesh, const CrackPoint& first, const CrackPoint& last);
 
