@@ -14,7 +14,8 @@ import numpy as np
 
 from .child import Child
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
-from .ledger import Ledger
+from .ledger import Ledger, read_ledger
+from .payload_hash import xxh3_128
 from .run_directory import RunDirectory, attributes, broken_in, written_file
 
 
@@ -294,10 +295,16 @@ def drive(options, progress):
         signal.signal(signal.SIGINT, _raise_interrupted)
         signal.signal(signal.SIGTERM, _raise_interrupted)
         with Ledger(directory.ledger_file) as ledger, progress:
-            ledger.write("start", case=str(options.case), mode=options.mode, resume=options.resume,
-                         overrides=options.overrides, threads=options.threads)
+            scene = {"scene_hash": xxh3_128(options.case.read_bytes()), "overrides": options.overrides}
+            starts = [event for event in read_ledger(directory.ledger_file) if event["event"] == "start"]
+            ledger.write("start", case=str(options.case), **scene, mode=options.mode, resume=options.resume,
+                         threads=options.threads)
+            run = Run(options, directory, lock, ledger, progress)
+            if starts and directory.case_file.exists() and {key: starts[0].get(key) for key in scene} != scene:
+                run.child_event("driver", {"event": "warning", "text": f"{options.case} or its --set is not what "
+                                           f"{directory.path} was started with; {directory.case_file} stays in force"})
             try:
-                Run(options, directory, lock, ledger, progress).execute()
+                run.execute()
             except (RockbreakError, Interrupted) as end:
                 ledger.write("end", code=end.code, reason=str(end))
                 raise

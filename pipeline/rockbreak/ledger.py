@@ -6,6 +6,8 @@ import json
 import threading
 import time
 
+from .errors import BAD_INPUT, RockbreakError
+
 
 class Ledger:
     """Appends events. A line that a killed run left half written is cut off before the first append."""
@@ -58,7 +60,7 @@ def read_ledger(path):
         except json.JSONDecodeError as error:
             if number == len(lines):
                 break
-            raise ValueError(f"{path}:{number}: not a JSON object: {error}") from error
+            raise RockbreakError(BAD_INPUT, f"{path}:{number}: not a JSON object: {error}") from error
     return events
 
 

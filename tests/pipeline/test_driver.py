@@ -186,6 +186,14 @@ def test_resume_of_a_finished_run_ends_at_once(work):
     assert not work.log_file.exists()
 
 
+def test_resume_with_another_scene_is_remarked_upon(work):
+    work.scene()
+    work.run()
+    work.directory.frame_file(3).unlink()
+    assert work.run("--resume", "--set", "seed=2").returncode == 0
+    assert "stays in force" in work.events("warning")[-1]["text"]
+
+
 def test_resume_without_a_frame_starts_anew(work):
     work.scene()
     assert work.run("--resume").returncode == 0

@@ -2,6 +2,7 @@ import json
 
 import pytest
 
+from rockbreak.errors import RockbreakError
 from rockbreak.ledger import Ledger, read_ledger, seconds_per_phase
 
 
@@ -40,7 +41,7 @@ def test_a_half_written_last_line_is_left_out_and_cut_off_before_the_next_event(
 def test_a_damaged_line_in_the_middle_is_named(tmp_path):
     path = tmp_path / "run.jsonl"
     path.write_text('{"event": "frame"}\n{"eve\n{"event": "end"}\n')
-    with pytest.raises(ValueError, match="run.jsonl:2"):
+    with pytest.raises(RockbreakError, match="run.jsonl:2"):
         read_ledger(path)
 
 
