@@ -1,0 +1,289 @@
+#include "dem/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "common/error.hpp"
+#include "dem/checkpoint.hpp"
+#include "dem/fragments.hpp"
+#include "dem/history.hpp"
+#include "dem/run_directory.hpp"
+#include "dem/stages/generate.hpp"
+#include "dem/stages/prepare.hpp"
+#include "dem/stages/shear.hpp"
+
+namespace fs = std::filesystem;
+
+namespace dem {
+namespace {
+
+constexpr int kPreparationInterval = 4000;  // steps between two checkpoints: a few seconds of work
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A state and what steers it, from a checkpoint or fresh.
+struct Start {
+  State state;
+  Control control;
+};
+
+Start fresh_start(const common::Scene& scene) {
+  Start start;
+  start.state.particles = generate_assembly(scene.assembly, scene.file, scene.material.density, scene.seed);
+  start.state.next_id = static_cast<std::int64_t>(start.state.particles.size());
+  start.state.friction = scene.effects.friction ? scene.preparation.initial_friction : 0;
+  return start;
+}
+
+class Run {
+ public:
+  Run(const common::Scene& scene, const RunOptions& options, const RunPorts& ports)
+      : scene_(scene),
+        options_(options),
+        ports_(ports),
+        hash_(common::config_hash(scene, common::UsedBy::dem)),
+        directory_(options.directory, options.resume),
+        history_(scene) {}
+
+  RunEnd operator()() {
+    const RunEnd end = run();
+    write_profile();
+    return end;
+  }
+
+ private:
+  RunEnd run() {
+    directory_.write_case(scene_);
+    if (options_.resume) {
+      if (std::optional<common::Frame> frame = directory_.newest_frame(hash_)) return resume_shear(*frame);
+    }
+    if (!scene_.preparation.from.empty()) {
+      start_from_sample();
+    } else if (const auto end = prepare()) {
+      return *end;
+    }
+    Shear::begin(*engine_, control_);
+    history_.record(*engine_, control_);
+    const std::optional<RunEnd> end = write_frame_and_exchange();
+    return end ? *end : shear();
+  }
+
+  void make_engine(State state) { engine_ = std::make_unique<Engine>(scene_, std::move(state)); }
+
+  // The sample of another run: its particles and contacts, this scene's laws and coefficients.
+  void start_from_sample() {
+    const common::Frame frame = common::read_frame(scene_.preparation.from);
+    if (frame.stage == common::Stage::shear && frame.frame != 0) {
+      throw common::bad_input(
+          fmt::format("{}: is frame {} of a test, expected a prepared sample (stage confinement) or frame 0",
+                      scene_.preparation.from, frame.frame));
+    }
+    control_ = read_control(frame);
+    make_engine(to_state(frame));
+    engine_->edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;
+  }
+
+  // Prepares a sample; nothing is returned when it is ready.
+  std::optional<RunEnd> prepare() {
+    const auto begin = Clock::now();
+    std::int64_t checkpoint = -1;
+    std::optional<common::Frame> found;
+    if (options_.resume) found = directory_.newest_preparation(hash_, checkpoint);
+    if (found) {
+      control_ = read_control(*found);
+      make_engine(to_state(*found));
+    } else {
+      Start start = fresh_start(scene_);
+      control_ = start.control;
+      make_engine(std::move(start.state));
+    }
+    Preparation preparation(scene_, *engine_, control_);
+    while (control_.phase != Phase::shear) {
+      preparation.step();
+      const std::int64_t step = engine_->state().step;
+      if (step % 500 == 0) report_preparation();
+      if (step % kPreparationInterval == 0 && control_.phase != Phase::shear) {
+        write_checkpoint(directory_.preparation(++checkpoint));
+        directory_.drop_preparations_before(checkpoint);
+        engine_->restart();
+      }
+      if (ports_.interrupted()) return RunEnd::interrupted;
+    }
+    if (!preparation.warning().empty()) warn(preparation.warning());
+    control_.phase = Phase::hold;
+    write_checkpoint(directory_.sample());
+    seconds_["preparation"] += seconds_since(begin);
+    // A sample read back is what other scenes start from, so this run starts from it as well.
+    const common::Frame sample = common::read_frame(directory_.sample());
+    control_ = read_control(sample);
+    make_engine(to_state(sample));
+    return std::nullopt;
+  }
+
+  void write_checkpoint(const fs::path& path) {
+    history_.record(*engine_, control_);
+    common::Frame frame = snapshot();
+    common::write_frame(path, frame, scene_.output.durability);
+  }
+
+  common::Frame snapshot() {
+    common::Frame frame = to_frame(engine_->state(), scene_, stage_of(control_.phase));
+    frame.frame = static_cast<std::int64_t>(control_.next_frame);
+    frame.axial_strain = control_.axial_strain();
+    frame.config_hash = hash_;
+    frame.history = history_.take();
+    for (common::Column& c : to_columns(control_)) frame.checkpoint.push_back(std::move(c));
+    return frame;
+  }
+
+  RunEnd resume_shear(const common::Frame& frame) {
+    control_ = read_control(frame);
+    make_engine(to_state(frame));
+    control_.next_frame = static_cast<double>(frame.frame + 1);
+    if (frame.final) return RunEnd::finished;
+    if (scene_.effects.breakage) {
+      const fs::path split = directory_.split(frame.frame);
+      if (!fs::exists(split)) {
+        throw common::bad_input(fmt::format("{}: frame {} has no split; run `xfem solve` on {} first", split.string(),
+                                            frame.frame, directory_.frame(frame.frame).string()));
+      }
+      apply(split, frame.payload_hash);
+    }
+    return shear();
+  }
+
+  RunEnd shear() {
+    const auto begin = Clock::now();
+    Shear shear_stage(scene_, *engine_, control_);
+    for (;;) {
+      while (!shear_stage.frame_due()) {
+        shear_stage.step();
+        if (engine_->state().step % scene_.shear.history_interval == 0) history_.record(*engine_, control_);
+        if (ports_.interrupted()) return RunEnd::interrupted;
+      }
+      if (engine_->state().step % scene_.shear.history_interval != 0) history_.record(*engine_, control_);
+      if (const auto end = write_frame_and_exchange()) {
+        seconds_["shear"] += seconds_since(begin) - seconds_["write"] - seconds_["exchange"];
+        return *end;
+      }
+    }
+  }
+
+  // Writes frame `next_frame` and lets the breakage analysis answer; nothing is returned when the test goes on.
+  std::optional<RunEnd> write_frame_and_exchange() {
+    const Shear stage(scene_, *engine_, control_);
+    common::Frame frame = snapshot();
+    frame.final = frame.frame >= stage.last_frame();
+    report_shear();
+    const auto write_begin = Clock::now();
+    const common::WrittenFile written =
+        common::write_frame(directory_.frame(frame.frame), frame, scene_.output.durability);
+    seconds_["write"] += seconds_since(write_begin);
+    control_.next_frame += 1;
+    engine_->restart();
+
+    std::optional<std::string> split = std::string();
+    if (ports_.exchange) {
+      const auto begin = Clock::now();
+      split = ports_.exchange(frame.frame, written);
+      seconds_["exchange"] += seconds_since(begin);
+      if (!split) return RunEnd::stopped;
+    }
+    if (frame.final) return RunEnd::finished;
+    if (options_.until_frame && frame.frame >= *options_.until_frame) return RunEnd::paused;
+    if (!split->empty()) {
+      apply(*split, frame.payload_hash);
+    } else if (scene_.effects.breakage && !ports_.exchange) {
+      if (!fs::exists(directory_.split(frame.frame))) return RunEnd::paused;
+      apply(directory_.split(frame.frame), frame.payload_hash);
+    }
+    return std::nullopt;
+  }
+
+  void apply(const fs::path& path, const std::string& frame_hash) {
+    const common::Split split = common::read_split(path);
+    if (split.frame_hash != frame_hash) {
+      throw common::bad_input(fmt::format("{}: answers a frame with payload hash {}, expected {}", path.string(),
+                                          split.frame_hash, frame_hash));
+    }
+    if (split.broken.parent.empty()) return;
+    const double before = elastic_energy(engine_->state(), engine_->constants());
+    const SplitReport report = apply_split(engine_->edit(), split, scene_.material.density);
+    engine_->restart();
+    share_inherited_history(engine_->edit(), report);
+    engine_->restart();
+    engine_->edit().energy.released_by_breakage +=
+        before - elastic_energy(engine_->state(), engine_->constants()) - report.kinetic_energy_change;
+    control_.momentum_error = std::max(control_.momentum_error, report.momentum_error);
+    control_.broken += report.broken;
+  }
+
+  void report_preparation() const {
+    const State& state = engine_->state();
+    const auto stress = mean_stress(state, ring_area(state));
+    emit({{"event", "progress"},
+          {"stage", name_of(control_.phase)},
+          {"step", state.step},
+          {"time", state.time},
+          {"void_ratio", void_ratio(state, scene_.preparation.definition)},
+          {"stress_xx", stress[0]},
+          {"stress_yy", stress[1]},
+          {"friction", state.friction},
+          {"unbalanced_force", engine_->health().unbalanced_force},
+          {"contacts", state.contacts.size()}});
+  }
+
+  void report_shear() const {
+    const State& state = engine_->state();
+    emit({{"event", "progress"},
+          {"stage", "shear"},
+          {"frame", static_cast<std::int64_t>(control_.next_frame)},
+          {"step", state.step},
+          {"axial_strain", control_.axial_strain()},
+          {"axial_strain_end", scene_.shear.axial_strain},
+          {"particles", state.particles.size()},
+          {"contacts", state.contacts.size()},
+          {"broken", control_.broken}});
+  }
+
+  void warn(const std::string& text) const { emit({{"event", "warning"}, {"text", text}}); }
+
+  void emit(const nlohmann::ordered_json& event) const { ports_.progress(event.dump()); }
+
+  void write_profile() {
+    if (options_.profile.empty()) return;
+    nlohmann::ordered_json json;
+    for (const auto& [phase, seconds] : seconds_) json["seconds"][phase] = seconds;
+    if (engine_) {
+      json["counts"] = {{"steps", engine_->state().step}, {"contact_steps", engine_->contact_steps()}};
+    }
+    const std::string text = json.dump(2) + "\n";
+    common::write_atomically(options_.profile, std::as_bytes(std::span(text)), {});
+  }
+
+  const common::Scene& scene_;
+  const RunOptions& options_;
+  const RunPorts& ports_;
+  std::string hash_;
+  RunDirectory directory_;
+  History history_;
+  Control control_;
+  std::unique_ptr<Engine> engine_;
+  std::map<std::string, double> seconds_;
+};
+
+}  // namespace
+
+RunEnd run(const common::Scene& scene, const RunOptions& options, const RunPorts& ports) {
+  return Run(scene, options, ports)();
+}
+
+}  // namespace dem
