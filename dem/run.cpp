@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -11,6 +13,7 @@
 #include "dem/checkpoint.hpp"
 #include "dem/fragments.hpp"
 #include "dem/history.hpp"
+#include "dem/measures.hpp"
 #include "dem/run_directory.hpp"
 #include "dem/stages/generate.hpp"
 #include "dem/stages/prepare.hpp"
