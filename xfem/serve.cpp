@@ -61,7 +61,7 @@ const SplitService::Answer& SplitService::solve(const std::filesystem::path& fra
   const double reading = seconds_since(start);
 
   common::Split split = solver_.solve(frame, previous_path ? &previous : nullptr);
-  for (const std::string& warning : solver_.warnings()) notify_(warning);
+  for (const std::string& warning : solver_.warnings()) notify_("warning: " + warning);
 
   const auto write_start = std::chrono::steady_clock::now();
   {

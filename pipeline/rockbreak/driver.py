@@ -159,7 +159,12 @@ class Run:
         self._progress.child_event(name, event)
 
     def child_message(self, name, text):
-        self._progress.message(text)
+        """Text for people; `NAME: warning: TEXT` goes into the ledger as well."""
+        mark = f"{name}: warning: "
+        if text.startswith(mark):
+            self.child_event(name, {"event": "warning", "text": text.removeprefix(mark)})
+        else:
+            self._progress.message(text)
 
     # -- the loop
 
@@ -266,7 +271,7 @@ class Run:
                            seconds={"xfem": round(waited, 6), "handover": round(handover, 6)})
         for particle, reason in _refusals_in(path):
             self.child_event("xfem", {"event": "warning", "frame": k, "particle": particle,
-                                      "text": f"frame {k}, particle {particle}: analysis refused: {reason}"})
+                                      "text": f"frame {k}: particle {particle}: analysis refused: {reason}"})
 
 
 def _refusals_in(path):

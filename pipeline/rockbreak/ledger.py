@@ -3,6 +3,7 @@
 Events are `start`, `frame`, `split`, `warning`, `end` and `report`; each has `event` and `time` (Unix seconds).
 """
 import json
+import re
 import threading
 import time
 
@@ -62,6 +63,11 @@ def read_ledger(path):
                 break
             raise RockbreakError(BAD_INPUT, f"{path}:{number}: not a JSON object: {error}") from error
     return events
+
+
+def kind_of(text):
+    """What warnings that differ by their numbers alone have in common."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", text)
 
 
 def seconds_per_phase(events):

@@ -7,6 +7,8 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
+from .ledger import kind_of
+
 
 def time_text(seconds):
     if seconds is None:
@@ -69,6 +71,7 @@ class TerminalProgress:
         self._console = Console(stderr=True)
         self._live = Live(Text("starting"), console=self._console, refresh_per_second=8, transient=True)
         self._time_left = TimeLeft()
+        self._warned = set()
         self._start = time.monotonic()
 
     def __enter__(self):
@@ -98,7 +101,10 @@ class TerminalProgress:
             self._live.update(Text.assemble((f"{event.get('stage', name)}  ", "bold"), "  ".join(fields),
                                             (f"  {elapsed}", "bright_black"), no_wrap=True, overflow="ellipsis"))
         elif event["event"] == "warning":
-            self.message(f"warning: {event.get('text') or event.get('message')}")
+            text = f"{name}: warning: {event.get('text', '')}"
+            if kind_of(text) not in self._warned:  # the others like it are in run.jsonl
+                self._warned.add(kind_of(text))
+                self.message(text)
 
     def message(self, text):
         self._console.print(text, markup=False, highlight=False)

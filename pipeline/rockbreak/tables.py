@@ -1,5 +1,8 @@
 """The report's numbers as text: headline, summary table with the paper's values, checks, warnings."""
+from collections import Counter
+
 from . import paper
+from .ledger import kind_of
 
 SERVO_TOLERANCE = 0.02      # rms of the lateral stress error
 AREA_TOLERANCE = 1e-12      # relative change of the total solid area
@@ -103,13 +106,15 @@ def checks(runs):
 
 
 def warnings(runs):
-    """(run, text) of every warning in the ledgers, equal ones counted."""
+    """(run, text) of the warnings in the ledgers; of those that differ by their numbers alone, the first."""
     found = []
     for run in runs:
-        counts = {}
+        first, counts = {}, Counter()
         for event in run.ledger():
             if event["event"] == "warning":
                 text = f"{event.get('source', '')}: {event.get('text', '')}".strip(": ")
-                counts[text] = counts.get(text, 0) + 1
-        found += [(run.name, text + (f" ({count} times)" if count > 1 else "")) for text, count in counts.items()]
+                first.setdefault(kind_of(text), text)
+                counts[kind_of(text)] += 1
+        found += [(run.name, text + (f" (and {counts[kind] - 1} more like it)" if counts[kind] > 1 else ""))
+                  for kind, text in first.items()]
     return found

@@ -6,6 +6,7 @@ import pytest
 
 import synthetic
 from conftest import REPOSITORY
+from rockbreak.tables import warnings
 
 
 @pytest.fixture(scope="module")
@@ -97,3 +98,18 @@ def test_what_cannot_be_reported_gets_a_message_and_an_exit_code(tmp_path, spoil
     spoil(run)
     process = report(run)
     assert process.returncode in (2, 4) and message in process.stderr and "Traceback" not in process.stderr
+
+
+def test_warnings_that_differ_by_numbers_alone_are_told_once():
+    class Run:
+        name = "r"
+
+        @staticmethod
+        def ledger():
+            texts = ["frame 1: 3 particles are out of balance by 1.5e-3", "frame 2: 12 particles are out of balance by 7",
+                     "the servo saturated"]
+            return [{"event": "start"}] + [{"event": "warning", "source": "xfem", "text": text} for text in texts]
+
+    assert warnings([Run]) == [
+        ("r", "xfem: frame 1: 3 particles are out of balance by 1.5e-3 (and 1 more like it)"),
+        ("r", "xfem: the servo saturated")]
