@@ -94,9 +94,10 @@ void write_lab_figure(const std::filesystem::path& file, const LabSetup& setup, 
   const std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"white\"/>\n"
-      "<text x=\"{2}\" y=\"28\" font-size=\"15\">{3} test, {4} nodes: first failure {5:.3f}, breakage {6:.3f} of "
-      "theory</text>\n<text x=\"{2}\" y=\"48\" fill=\"#555\">at first failure, 1 = failing; cracks in red, fragments "
-      "in black</text>\n{7}{8}</svg>\n",
+      "<text x=\"{2}\" y=\"26\" font-size=\"15\">{3} test, {4} nodes</text>\n"
+      "<text x=\"{2}\" y=\"44\">first failure {5:.4f}, breakage {6:.4f} of theory</text>\n"
+      "<text x=\"{2}\" y=\"60\" fill=\"#555\">colour: 1 / lambda at first failure; cracks red, fragments black</text>"
+      "\n{7}{8}</svg>\n",
       width, height, kMargin, setup.test, result.mesh.nodes.size(), result.first_failure_load / setup.theory_load,
       result.breakage_load / setup.theory_load, body, legend(canvas));
   common::write_atomically(file, std::as_bytes(std::span(text)), {});

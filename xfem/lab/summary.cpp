@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
@@ -42,6 +43,30 @@ const char* name_of(FailureMode mode) {
   }
 }
 
+/// Angle between a line and the load axis (y) [degrees], 0 to 90.
+double angle_degrees(const Vec2& line) {
+  return std::atan2(std::abs(line.x()), std::abs(line.y())) * 180 / std::numbers::pi;
+}
+
+/// Of the crack's segment whose middle is nearest to the point of first failure: the plane on which it started.
+std::optional<double> initiation_angle_degrees(const LabResult& result) {
+  std::optional<double> angle;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Crack& crack : result.breakage.cracks)
+    for (std::size_t i = 1; i < crack.points.size(); ++i) {
+      const Vec2 &a = crack.points[i - 1].position, &b = crack.points[i].position;
+      const double distance = (0.5 * (a + b) - result.first_failure_point).norm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      angle = angle_degrees(b - a);
+    }
+  return angle;
+}
+
+Json optional_number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
 /// The longest crack, as a polyline.
 Json crack_path(const std::vector<Crack>& cracks) {
   Json longest = Json::array();
@@ -65,8 +90,7 @@ Json crack_path(const std::vector<Crack>& cracks) {
 
 std::optional<double> fracture_angle_degrees(const BreakageResult& result) {
   if (!result.path) return std::nullopt;
-  const Vec2 chord = (*result.path)[1] - (*result.path)[0];
-  return std::atan2(std::abs(chord.x()), std::abs(chord.y())) * 180 / std::numbers::pi;
+  return angle_degrees((*result.path)[1] - (*result.path)[0]);
 }
 
 void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup, const LabResult& result,
@@ -75,7 +99,7 @@ void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup,
   summary["schema"] = "lab/1";
   summary["test"] = setup.test;
   if (setup.test == "brazilian")
-    summary["specimen"] = {{"diameter", test.specimen.diameter}, {"sides", test.specimen.sides}};
+    summary["specimen"] = {{"diameter", test.specimen.diameter}, {"sides", setup.outline.size()}};
   else
     summary["specimen"] = {{"width", test.specimen.width}, {"height", test.specimen.height}};
   summary["specimen"]["area"] = common::area(setup.outline);
@@ -98,8 +122,8 @@ void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup,
   summary["breakage_line"] = Json::array();
   if (result.breakage.path)
     for (const Vec2& end : *result.breakage.path) summary["breakage_line"].push_back(point(end));
-  const std::optional<double> angle = fracture_angle_degrees(result.breakage);
-  summary["fracture_angle_deg"] = angle ? Json(*angle) : Json(nullptr);
+  summary["fracture_angle_deg"] = optional_number(fracture_angle_degrees(result.breakage));
+  summary["initiation_angle_deg"] = optional_number(initiation_angle_degrees(result));
   summary["fragments"] = Json::array();
   if (result.breakage.path)
     for (const Polygon* fragment : {&result.breakage.left, &result.breakage.right})

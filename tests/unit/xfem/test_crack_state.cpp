@@ -1,9 +1,8 @@
-#include "xfem/crack_state.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
 #include "sample_frame.hpp"
+#include "xfem/crack_state.hpp"
 
 using common::Vec2;
 

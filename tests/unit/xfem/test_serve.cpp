@@ -1,11 +1,10 @@
-#include "xfem/serve.hpp"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
 
 #include "common/error.hpp"
 #include "sample_frame.hpp"
+#include "xfem/serve.hpp"
 
 namespace {
 

@@ -1,5 +1,3 @@
-#include "xfem/solve_frame.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -7,6 +5,7 @@
 #include "common/error.hpp"
 #include "sample_frame.hpp"
 #include "xfem/crack_state.hpp"
+#include "xfem/solve_frame.hpp"
 
 using common::ParticleStatus;
 using common::Vec2;
