@@ -94,16 +94,23 @@ template <int Width>
 void substitute(const std::vector<int>& start, const std::vector<int>& row, const std::vector<double>& value,
                 const std::vector<double>& pivot, double* x) {
   const int n = static_cast<int>(pivot.size());
+  std::array<double, Width> own;  // a local copy, so that the compiler keeps the Width values in one register
   for (int j = 0; j < n; ++j) {
+    for (int c = 0; c < Width; ++c) own[c] = x[j * Width + c];
     for (int k = start[j]; k < start[j + 1]; ++k) {
-      for (int c = 0; c < Width; ++c) x[row[k] * Width + c] -= value[k] * x[j * Width + c];
+      const double l = value[k];
+      double* target = x + row[k] * Width;
+      for (int c = 0; c < Width; ++c) target[c] -= l * own[c];
     }
   }
   for (int j = n - 1; j >= 0; --j) {
-    for (int c = 0; c < Width; ++c) x[j * Width + c] /= pivot[j];
+    for (int c = 0; c < Width; ++c) own[c] = x[j * Width + c] / pivot[j];
     for (int k = start[j]; k < start[j + 1]; ++k) {
-      for (int c = 0; c < Width; ++c) x[j * Width + c] -= value[k] * x[row[k] * Width + c];
+      const double l = value[k];
+      const double* source = x + row[k] * Width;
+      for (int c = 0; c < Width; ++c) own[c] -= l * source[c];
     }
+    for (int c = 0; c < Width; ++c) x[j * Width + c] = own[c];
   }
 }
 

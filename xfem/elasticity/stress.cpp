@@ -25,12 +25,8 @@ StressAverage::StressAverage(const Mesh& mesh, double radius) {
     auto candidate = std::lower_bound(order.begin(), order.end(), centroid[t].x() - radius,
                                       [&](int e, double x) { return centroid[e].x() < x; });
     for (; candidate != order.end() && centroid[*candidate].x() <= centroid[t].x() + radius; ++candidate) {
-      if (*candidate != t && (centroid[*candidate] - centroid[t]).squaredNorm() <= radius * radius) {
-        element_.push_back(*candidate);
-      }
+      if ((centroid[*candidate] - centroid[t]).squaredNorm() <= radius * radius) element_.push_back(*candidate);
     }
-    element_.push_back(t);
-    std::sort(element_.begin() + static_cast<std::ptrdiff_t>(first), element_.end());
     double sum = 0;
     for (std::size_t k = first; k < element_.size(); ++k) sum += mesh.areas[element_[k]];
     for (std::size_t k = first; k < element_.size(); ++k) weight_.push_back(mesh.areas[element_[k]] / sum);
