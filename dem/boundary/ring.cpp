@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "common/error.hpp"
 
@@ -21,41 +22,59 @@ constexpr double kSameTurn = 1e-9;
 /// stored, so a particle far away costs nothing.
 class Cells {
  public:
-  Cells(std::span<const Vec2> centres, double size) : centres_(centres), size_(size) {
+  Cells(std::span<const Vec2> centres, double size) : size_(size) {
     entries_.reserve(centres.size());
-    for (std::size_t i = 0; i < centres.size(); ++i) entries_.push_back(entry(static_cast<std::int32_t>(i)));
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+      entries_.push_back(entry(centres[i], static_cast<std::int32_t>(i)));
+    }
     std::sort(entries_.begin(), entries_.end(),
               [](const Entry& l, const Entry& r) { return before(l, r) || (!before(r, l) && l.index < r.index); });
   }
 
-  /// Calls visit(index, squared distance) for the other centres nearer to centre i than the cell size.
+  /// Calls visit(index, squared distance) for the other centres nearer to centre i, which is at `at`, than the cell
+  /// size.
   template <typename Visit>
-  void for_neighbours(std::int32_t i, Visit&& visit) const {
-    const Entry at = entry(i);
-    for (const double row : {at.row - 1, at.row, at.row + 1}) {
-      const Entry first{row, at.column - 1, 0};
-      for (auto e = std::lower_bound(entries_.begin(), entries_.end(), first, before);
-           e != entries_.end() && e->row == row && e->column <= at.column + 1; ++e) {
-        if (e->index == i) continue;
-        const double squared = (centres_[e->index] - centres_[i]).squaredNorm();
-        if (squared < size_ * size_) visit(e->index, squared);
+  void for_neighbours(std::int32_t i, const Vec2& at, Visit&& visit) const {
+    const Entry own = entry(at, i);
+    for (const double row : {own.row - 1, own.row, own.row + 1}) {
+      for (auto e = first_of(row, own.column - 1); e != entries_.end() && in_row(*e, row, own.column + 1); ++e) {
+        const double squared = (e->at - at).squaredNorm();
+        if (e->index != i && squared < size_ * size_) visit(e->index, squared);
       }
+    }
+  }
+
+  /// Calls visit(index, index) once for each pair of centres nearer to each other than the cell size.
+  template <typename Visit>
+  void for_pairs(Visit&& visit) const {
+    auto above = entries_.begin();  // the first that may be a neighbour in the row above
+    for (auto e = entries_.begin(); e != entries_.end(); ++e) {
+      const auto test = [&](const Entry& other) {
+        if ((other.at - e->at).squaredNorm() < size_ * size_) visit(e->index, other.index);
+      };
+      for (auto f = e + 1; f != entries_.end() && in_row(*f, e->row, e->column + 1); ++f) test(*f);
+      while (above != entries_.end() && before(*above, {e->row + 1, e->column - 1, {}, 0})) ++above;
+      for (auto f = above; f != entries_.end() && in_row(*f, e->row + 1, e->column + 1); ++f) test(*f);
     }
   }
 
  private:
   struct Entry {
     double row, column;
+    Vec2 at;
     std::int32_t index;
   };
   static bool before(const Entry& l, const Entry& r) {
     return l.row < r.row || (l.row == r.row && l.column < r.column);
   }
-  Entry entry(std::int32_t i) const {
-    return {std::floor(centres_[i].y() / size_), std::floor(centres_[i].x() / size_), i};
+  static bool in_row(const Entry& e, double row, double last_column) { return e.row == row && e.column <= last_column; }
+  Entry entry(const Vec2& at, std::int32_t i) const {
+    return {std::floor(at.y() / size_), std::floor(at.x() / size_), at, i};
+  }
+  std::vector<Entry>::const_iterator first_of(double row, double column) const {
+    return std::lower_bound(entries_.begin(), entries_.end(), Entry{row, column, {}, 0}, before);
   }
 
-  std::span<const Vec2> centres_;
   double size_;
   std::vector<Entry> entries_;
 };
@@ -79,35 +98,29 @@ struct Group {
 };
 
 /// The largest set of centres that are linked by gaps which the ball cannot pass.
-Group largest_group(std::span<const Vec2> centres, const Cells& cells) {
-  std::vector<std::int32_t> label(centres.size(), -1);
-  std::vector<std::int32_t> stack;
-  Group largest;
-  std::int32_t best = -1;
-  for (std::size_t seed = 0; seed < centres.size(); ++seed) {
-    if (label[seed] >= 0) continue;
-    const auto name = static_cast<std::int32_t>(seed);
-    std::size_t size = 0;
-    label[seed] = name;
-    stack.push_back(name);
-    while (!stack.empty()) {
-      const std::int32_t i = stack.back();
-      stack.pop_back();
-      ++size;
-      cells.for_neighbours(i, [&](std::int32_t j, double) {
-        if (label[j] >= 0) return;
-        label[j] = name;
-        stack.push_back(j);
-      });
-    }
-    if (size > largest.size) {
-      largest.size = size;
-      best = name;
-    }
+Group largest_group(std::size_t count, const Cells& cells) {
+  std::vector<std::int32_t> head(count);  // a forest; each root is the lowest index of its set
+  std::iota(head.begin(), head.end(), 0);
+  const auto root = [&](std::int32_t i) {
+    while (head[i] != i) i = head[i] = head[head[i]];
+    return i;
+  };
+  cells.for_pairs([&](std::int32_t i, std::int32_t j) {
+    const std::int32_t a = root(i);
+    const std::int32_t b = root(j);
+    head[std::max(a, b)] = std::min(a, b);
+  });
+  std::vector<std::size_t> size(count, 0);
+  for (std::size_t i = 0; i < count; ++i) ++size[root(static_cast<std::int32_t>(i))];
+  const auto largest = std::max_element(size.begin(), size.end());
+
+  Group group;
+  group.size = *largest;
+  group.member.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    group.member[i] = root(static_cast<std::int32_t>(i)) == largest - size.begin();
   }
-  largest.member.resize(centres.size());
-  for (std::size_t i = 0; i < centres.size(); ++i) largest.member[i] = label[i] == best;
-  return largest;
+  return group;
 }
 
 /// Centres that the ball touches one after the other while it rolls around the group, counter-clockwise; empty if it
@@ -134,7 +147,7 @@ std::vector<std::int32_t> roll(std::span<const Vec2> centres, const Cells& cells
     const std::int32_t pivot = walk.back();
     touches.clear();
     double least = std::numeric_limits<double>::infinity();
-    cells.for_neighbours(pivot, [&](std::int32_t j, double squared) {
+    cells.for_neighbours(pivot, centres[pivot], [&](std::int32_t j, double squared) {
       const double half = 0.5 * std::sqrt(squared) / radius;
       if (!group.member[j] || half < 1e-12) return;
       // The ball that touches both lies to the right of the way from pivot to j.
@@ -227,7 +240,7 @@ std::vector<std::int32_t> find_ring(std::span<const Vec2> centres, double ball_r
   const double extent = (high - low).norm();
   for (double radius = ball_radius;; radius *= 1.25) {
     const Cells cells(centres, 2 * radius);
-    const Group group = largest_group(centres, cells);
+    const Group group = largest_group(centres.size(), cells);
     Loop loop = largest_loop(centres, roll(centres, cells, group, radius));
     const bool good = 2 * group.size > centres.size() && loop.area > 0.9 * loop.total;
     if (good || radius > extent) {
