@@ -40,7 +40,7 @@ struct Start {
 
 Start fresh_start(const common::Scene& scene) {
   Start start;
-  start.state.particles = generate_assembly(scene.assembly, scene.file, scene.material.density, scene.seed);
+  start.state.particles = generate_assembly(scene.assembly, scene.material.density, scene.seed);
   start.state.next_id = static_cast<std::int64_t>(start.state.particles.size());
   start.state.friction = scene.effects.friction ? scene.preparation.initial_friction : 0;
   return start;

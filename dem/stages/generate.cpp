@@ -176,8 +176,7 @@ std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, commo
   return outlines;
 }
 
-Particles generate_assembly(const common::AssemblyOptions& options, const std::filesystem::path&, double density,
-                            std::uint64_t seed) {
+Particles generate_assembly(const common::AssemblyOptions& options, double density, std::uint64_t seed) {
   common::Random random(seed);
   const std::vector<Polygon> types = make_shape_types(options.shapes, random);
   Particles particles;

@@ -24,7 +24,6 @@ std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, commo
 /// the origin, at rest. Types, diameters and orientations are drawn in the order of the ids, places from the largest to
 /// the smallest, each by at most 10,000 trials; the circle grows by 2 % and placing begins anew when one finds no room.
 /// A function of the options and the seed alone.
-Particles generate_assembly(const common::AssemblyOptions& options, const std::filesystem::path& scene_file,
-                            double density, std::uint64_t seed);
+Particles generate_assembly(const common::AssemblyOptions& options, double density, std::uint64_t seed);
 
 }  // namespace dem

@@ -28,7 +28,7 @@ dem::State loose(int particles, std::uint64_t seed, double friction) {
   common::AssemblyOptions options;
   options.particles = particles;
   dem::State state;
-  state.particles = dem::generate_assembly(options, {}, bodies::kDensity, seed);
+  state.particles = dem::generate_assembly(options, bodies::kDensity, seed);
   state.next_id = particles;
   state.friction = friction;
   return state;

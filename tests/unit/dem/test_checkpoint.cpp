@@ -27,7 +27,7 @@ common::Scene test_scene() {
 /// A pile under way: contacts, shear histories, energies, velocities, all of them not zero.
 dem::Engine pile(const common::Scene& scene) {
   dem::State state;
-  state.particles = dem::generate_assembly(scene.assembly, {}, scene.material.density, 4);
+  state.particles = dem::generate_assembly(scene.assembly, scene.material.density, 4);
   state.next_id = 60;
   state.friction = 0.5;
   dem::Engine engine(scene, state);

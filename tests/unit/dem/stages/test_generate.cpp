@@ -71,7 +71,7 @@ TEST_CASE("without roughness and elongation the types are regular polygons") {
 
 TEST_CASE("an assembly is without overlap, fills half of its circle and has the diameters asked for") {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const auto particles = dem::generate_assembly(assembly(300), {}, 2500, seed);
+    const auto particles = dem::generate_assembly(assembly(300), 2500, seed);
     REQUIRE(particles.size() == 300);
     double solids = 0, reach = 0, least = 1, most = 0, mean = 0;
     std::vector<Polygon> outlines;
@@ -104,9 +104,9 @@ TEST_CASE("an assembly is a function of its seed") {
   const auto same = [](const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0;
   };
-  const auto first = dem::generate_assembly(assembly(100), {}, 2500, 5);
-  const auto again = dem::generate_assembly(assembly(100), {}, 2500, 5);
-  const auto other = dem::generate_assembly(assembly(100), {}, 2500, 6);
+  const auto first = dem::generate_assembly(assembly(100), 2500, 5);
+  const auto again = dem::generate_assembly(assembly(100), 2500, 5);
+  const auto other = dem::generate_assembly(assembly(100), 2500, 6);
   CHECK(same(first.position, again.position));
   CHECK(same(first.vertices, again.vertices));
   CHECK(first.angle == again.angle);
@@ -114,12 +114,12 @@ TEST_CASE("an assembly is a function of its seed") {
 }
 
 TEST_CASE("one particle, equal sizes and sizes of 10 to 1 can be placed") {
-  CHECK(dem::generate_assembly(assembly(1), {}, 2500, 1).size() == 1);
+  CHECK(dem::generate_assembly(assembly(1), 2500, 1).size() == 1);
   auto options = assembly(200);
   options.diameter_min = options.diameter_max = 0.5;
-  CHECK(dem::generate_assembly(options, {}, 2500, 1).size() == 200);
+  CHECK(dem::generate_assembly(options, 2500, 1).size() == 200);
   options.diameter_min = 0.05;
-  CHECK(dem::generate_assembly(options, {}, 2500, 1).size() == 200);
+  CHECK(dem::generate_assembly(options, 2500, 1).size() == 200);
 }
 
 TEST_CASE("given outlines are scaled, centred and turned counter-clockwise") {
