@@ -17,7 +17,10 @@ namespace xfem {
 
 namespace {
 
+/// Unbalanced part of a particle's forces above which it is worth a warning.
 constexpr double kUnbalanceWarning = 0.05;
+/// Part of the mean sum of contact forces below which a particle is not worth one.
+constexpr double kHardlyLoaded = 0.05;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -283,11 +286,21 @@ void FrameSolver::Implementation::record(const common::Frame& frame, const std::
 }
 
 void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, const std::vector<Case>& cases) {
+  // A particle that hardly carries anything may be far out of balance without meaning anything.
+  std::vector<double> carried(cases.size(), 0.0);
+  double sum = 0;
+  int analysed = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!cases[i].slot) continue;
+    for (const Load& load : cases[i].loads) carried[i] += load.force.norm();
+    sum += carried[i];
+    ++analysed;
+  }
   int count = 0;
   std::size_t worst = 0;
   double largest = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!cases[i].slot) continue;
+    if (!cases[i].slot || carried[i] < kHardlyLoaded * sum / analysed) continue;
     const double unbalance = IntactModel::unbalance(cases[i].loads);
     if (unbalance > kUnbalanceWarning) ++count;
     if (unbalance > largest) {
@@ -297,9 +310,9 @@ void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, 
   }
   if (count > 0)
     warnings.push_back(fmt::format(
-        "frame {}: the contact forces of {} of {} particles are out of balance by more than {:.0f} % (worst: particle "
-        "{}, {:.1f} %); the rest is taken as a body force",
-        frame.frame, count, cases.size(), 100 * kUnbalanceWarning, frame.particles.id[worst], 100 * largest));
+        "frame {}: the contact forces of {} of {} analysed particles are out of balance by more than {:.0f} % (worst: "
+        "particle {}, {:.1f} %); the rest is taken as a body force",
+        frame.frame, count, analysed, 100 * kUnbalanceWarning, frame.particles.id[worst], 100 * largest));
 }
 
 FrameSolver::FrameSolver(const common::Scene& scene, int threads)

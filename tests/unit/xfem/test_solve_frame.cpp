@@ -172,12 +172,68 @@ TEST_CASE("cracks persist: they are kept without load and start the next analysi
   }
 }
 
-TEST_CASE("an unbalanced particle is named in a warning and still analysed") {
+TEST_CASE("a crack beside the path passes to the fragment that holds it, where it was") {
+  const common::Frame frame = sample::frame();
+  const common::Scene scene = sample::scene();
+  const common::Split plain = xfem::FrameSolver(scene, 1).solve(frame, nullptr);
+  const auto fragment = [](const common::Split& split, std::size_t f) {
+    return common::Polygon(split.fragments.vertices.begin() + split.fragments.vertex_offset[f],
+                           split.fragments.vertices.begin() + split.fragments.vertex_offset[f + 1]);
+  };
+  int handed_down = 0;
+  for (std::size_t m = 0; m < plain.broken.parent.size(); ++m) {
+    // A short dead crack along the path, in the middle of the left fragment of the plain solution.
+    const std::int64_t parent = plain.broken.parent[m];
+    const common::Polygon left = fragment(plain, 2 * m);
+    if (common::area(left) < 3 * scene.breakage.minimum_area) continue;
+    const Vec2 along = 0.3 * (plain.broken.path[m][1] - plain.broken.path[m][0]), middle = common::centroid(left);
+    const std::vector<Vec2> line{middle - along, middle + along};
+    const xfem::Mesh mesh =
+        xfem::make_mesh(frame.particles.outline(static_cast<std::size_t>(parent)), scene.breakage.nodes);
+    const xfem::Crack crack = xfem::place_polyline(mesh, line, {xfem::TipState::arrested, xfem::TipState::arrested});
+    common::Split previous;
+    previous.frame = frame.frame - 1;
+    previous.config_hash = plain.config_hash;
+    xfem::append_cracks(previous, parent, {crack});
+
+    const common::Split split = xfem::FrameSolver(scene, 1).solve(frame, &previous);
+    const xfem::CrackState state = xfem::stored_cracks(split);
+    for (std::size_t f = 0; f < split.fragments.id.size(); ++f) {
+      const auto found = state.find(split.fragments.id[f]);
+      if (found == state.end()) continue;
+      ++handed_down;
+      REQUIRE(split.fragments.parent[f] == parent);
+      REQUIRE(found->second.size() == 1);
+      CHECK(found->second[0].tips == crack.tips);
+      common::Polygon outline = fragment(split, f);
+      const Vec2 origin = common::centroid(outline);
+      for (Vec2& v : outline) v -= origin;
+      const xfem::Mesh own = xfem::make_mesh(outline, scene.breakage.nodes);
+      const auto on_mesh = xfem::crack_on_mesh(own, found->second[0]);
+      REQUIRE(on_mesh);
+      for (std::size_t p = 0; p < on_mesh->points.size(); ++p) {
+        CHECK(on_mesh->points[p].position == found->second[0].points[p].position);
+        // Each placement may move a point by 2 % of its edge, to keep it off the nodes.
+        const Vec2 off = on_mesh->points[p].position + origin - line[0];
+        CHECK(std::abs(common::cross(along, off)) / along.norm() < 5e-2 * own.size);
+      }
+    }
+  }
+  CHECK(handed_down >= 1);
+}
+
+TEST_CASE("an unbalanced particle is named in a warning and still analysed, one that carries nothing is not") {
   common::Frame frame = sample::frame();
-  frame.contacts.force[0] *= 1.5;
+  REQUIRE(frame.contacts.b[0] == sample::kGentle);
+  REQUIRE(frame.contacts.b[2] == sample::kFirstCrushed);
   xfem::FrameSolver solver(sample::scene(), 1);
+  frame.contacts.force[0] *= 1.5;
   solver.solve(frame, nullptr);
+  CHECK(solver.warnings().empty());
+  frame.contacts.force[2] *= 1.5;
+  const common::Split split = solver.solve(frame, nullptr);
   REQUIRE(solver.warnings().size() == 1);
   CHECK_THAT(solver.warnings()[0], Catch::Contains("frame 7") && Catch::Contains("of 1 of") &&
-                                       Catch::Contains("worst: particle " + std::to_string(frame.contacts.b[0])));
+                                       Catch::Contains("worst: particle " + std::to_string(sample::kFirstCrushed)));
+  CHECK(split.particles.status[sample::kFirstCrushed] != ParticleStatus::refused);
 }
