@@ -364,30 +364,48 @@ Contents contents_of_image(std::span<std::byte> image, bool sealed) {
   return contents;
 }
 
-/// Whether the library gets through a file without a crash: tried in a child process, as damaged metadata can lead
-/// HDF5 1.10 out of bounds. Sealed files need no trial, ours cost nothing.
-bool library_survives(std::span<std::byte> image) {
+/// What is wrong with an unsealed file, empty if the library gets through it. Tried in a child process: damaged
+/// metadata can lead HDF5 1.10 out of bounds or to gigabytes. Sealed files need no trial, so ours cost nothing.
+std::string failure_in_trial(std::span<std::byte> image) {
   constexpr unsigned kSecondsAtMost = 60;
+  constexpr std::size_t kLongestMessage = 2000;  // fits the pipe, so that the child never waits
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) < 0) return {};  // without a pipe or a process: go on without the trial
   const pid_t child = ::fork();
-  if (child < 0) return true;  // no process to be had: go on without the trial
   if (child == 0) {
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) std::signal(signal, SIG_DFL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    const int nowhere = ::open("/dev/null", O_WRONLY);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
     ::alarm(kSecondsAtMost);
+    std::string message;
     try {
       contents_of_image(image, false);
-    } catch (...) {  // an error is as good as a result here: it comes again in the parent
+    } catch (const LibraryFailure& failure) {
+      message = failure.message.substr(0, kLongestMessage);
+    } catch (...) {
+      message = "damaged: describes arrays that do not fit into memory";
     }
-    ::_exit(0);
+    const bool told = ::write(ends[1], message.data(), message.size()) == static_cast<ssize_t>(message.size());
+    ::_exit(told ? 0 : 1);
   }
+  ::close(ends[1]);
+  std::string message(kLongestMessage, '\0');
+  ssize_t length = 0;
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  if (child > 0) {
+    do {
+      length = ::read(ends[0], message.data(), message.size());
+    } while (length < 0 && errno == EINTR);
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  ::close(ends[0]);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "damaged: HDF5 breaks down over it";
+  message.resize(static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+  return message;
 }
 
 }  // namespace
@@ -417,7 +435,9 @@ Contents read_hdf5(const std::filesystem::path& path) {
   Contents contents;
   try {
     const Library library;
-    if (seal != Seal::intact && !library_survives(file)) throw LibraryFailure{"damaged: HDF5 breaks down over it"};
+    if (seal != Seal::intact) {
+      if (const std::string failure = failure_in_trial(file); !failure.empty()) throw LibraryFailure{failure};
+    }
     contents = contents_of_image(file, seal == Seal::intact);
   } catch (const LibraryFailure& failure) {
     throw bad_input(path.string() + ": " + failure.message);
