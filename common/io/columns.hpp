@@ -40,7 +40,7 @@ template <class Scalar>
 std::vector<Scalar> scalars_as(const Item& item, const Source& source, const std::string& what) {
   const auto convert = [&]<class Stored>(Stored) {
     std::vector<Stored> stored(item.bytes.size() / sizeof(Stored));
-    std::memcpy(stored.data(), item.bytes.data(), item.bytes.size());
+    if (!stored.empty()) std::memcpy(stored.data(), item.bytes.data(), item.bytes.size());
     if constexpr (std::is_same_v<Stored, Scalar>) {
       return stored;
     } else {

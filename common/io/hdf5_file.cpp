@@ -338,11 +338,18 @@ std::uint64_t described_size(std::span<const std::byte> image) {
   return end;
 }
 
-Contents contents_of_image(std::span<std::byte> image, bool sealed) {
-  const std::uint64_t end = described_size(image);
-  if (!sealed && end > 0 && image.size() > end && image.size() - end <= kSealBytes) {
+/// The length of an unsealed file, as far as its superblock tells it.
+void check_length(std::span<const std::byte> file) {
+  const std::uint64_t end = described_size(file);
+  if (end > file.size()) {
+    throw LibraryFailure{fmt::format("truncated: has {} bytes, expected {}", file.size(), end)};
+  }
+  if (end > 0 && file.size() > end && file.size() - end <= kSealBytes) {
     throw LibraryFailure{"damaged: the seal at its end is incomplete"};
   }
+}
+
+Contents contents_of_image(std::span<std::byte> image) {
   const Handle access = memory_access(4096);
   check(H5Pset_file_image(access, image.data(), image.size()), "file");
   const Handle file(H5Fopen("image", H5F_ACC_RDONLY, access), H5Fclose, "not a complete HDF5 file");
@@ -382,7 +389,7 @@ std::string failure_in_trial(std::span<std::byte> image) {
     ::alarm(kSecondsAtMost);
     std::string message;
     try {
-      contents_of_image(image, false);
+      contents_of_image(image);
     } catch (const LibraryFailure& failure) {
       message = failure.message.substr(0, kLongestMessage);
     } catch (...) {
@@ -436,9 +443,10 @@ Contents read_hdf5(const std::filesystem::path& path) {
   try {
     const Library library;
     if (seal != Seal::intact) {
+      check_length(file);
       if (const std::string failure = failure_in_trial(file); !failure.empty()) throw LibraryFailure{failure};
     }
-    contents = contents_of_image(file, seal == Seal::intact);
+    contents = contents_of_image(file);
   } catch (const LibraryFailure& failure) {
     throw bad_input(path.string() + ": " + failure.message);
   } catch (const std::bad_alloc&) {
