@@ -36,7 +36,7 @@ common::Scene breakable_scene(const Arguments& arguments) {
   common::Scene scene = common::read_scene(arguments.config, arguments.overrides);
   if (!scene.effects.breakage)
     throw common::bad_input(
-        fmt::format("{}: its `effects` do not name `breakage`, so there is nothing to analyse", arguments.config));
+        fmt::format("{}: its effects do not name breakage, so there is nothing to analyse", arguments.config));
   return scene;
 }
 

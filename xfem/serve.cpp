@@ -60,7 +60,12 @@ const SplitService::Answer& SplitService::solve(const std::filesystem::path& fra
   last_mark_.reset();
   const double reading = seconds_since(start);
 
-  common::Split split = solver_.solve(frame, previous_path ? &previous : nullptr);
+  common::Split split;
+  try {
+    split = solver_.solve(frame, previous_path ? &previous : nullptr);
+  } catch (const common::Error& error) {
+    throw common::Error(error.code(), fmt::format("{}: {}", frame_path.string(), error.what()));
+  }
   for (const std::string& warning : solver_.warnings()) notify_("warning: " + warning);
 
   const auto write_start = std::chrono::steady_clock::now();
