@@ -85,7 +85,7 @@ TEST_CASE("bad input ends with exit code 2 and a message that says what and wher
   refuses(work.solve("--out"), "--out");
   refuses(work.solve(out + " --set breakage.node=50"), "did you mean \"nodes\"?");
   refuses(work.solve(out + " --set material.young_modulus=-1"), "young_modulus");
-  refuses(work.solve(out + " --set effects=[friction]"), "do not name `breakage`");
+  refuses(work.solve(out + " --set effects=[friction]"), "do not name breakage");
   refuses("check " + work.at("nothing.yaml"), "xfem: error: " + work.at("nothing.yaml"));
 
   const std::string whole = text_of(work.directory / "frame.h5");
