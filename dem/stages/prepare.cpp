@@ -11,6 +11,7 @@ namespace dem {
 namespace {
 
 constexpr double kContactStress = 0.02;    // of the pressure: particles touch
+constexpr double kContactsEach = 0.75;     // contacts per particle: they touch, however stiff they are
 constexpr double kRelaxed = 0.05;          // unbalanced force at which relaxation ends
 constexpr double kPressureReached = 0.01;  // relative error of both stresses
 constexpr double kPressureFollowed = 0.1;
@@ -72,7 +73,9 @@ void Preparation::steer() {
   const bool late = state.time - control_.phase_start > kLongestPhase;
 
   if (control_.phase == Phase::compaction) {
-    if (0.5 * (stress[0] + stress[1]) > kContactStress * p) {
+    const bool touching =
+        static_cast<double>(state.contacts.size()) > kContactsEach * static_cast<double>(state.particles.size());
+    if (touching || 0.5 * (stress[0] + stress[1]) > kContactStress * p || late) {
       enter(Phase::relaxation);
       control_.steps_to_ring = 0;
     }

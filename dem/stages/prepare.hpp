@@ -1,5 +1,6 @@
 // From a loose random assembly to a sample at rest under isotropic pressure with the wanted void ratio:
-//   compaction     affine, at a constant rate, until the mean stress is 2 % of the pressure
+//   compaction     affine, at a constant rate, until particles touch: 3 contacts for 4 particles, or a mean stress of
+//                  2 % of the pressure
 //   relaxation     boundary at rest, until the unbalanced force has died away
 //   confinement    both directions servo-controlled to the pressure, with the preparation's high friction
 //   densification  friction lowered slowly until the void ratio is met
