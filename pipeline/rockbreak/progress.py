@@ -34,11 +34,12 @@ class TimeLeft:
 
 
 class JsonProgress:
-    """One JSON object per line: every frame, and every event of the children."""
+    """One JSON object per line: every frame, every event of the children, but their progress at most once a second."""
 
     def __init__(self, stream=None):
         self._stream = stream or sys.stderr
         self._time_left = TimeLeft()
+        self._last_progress = -1.0
 
     def __enter__(self):
         return self
@@ -55,6 +56,11 @@ class JsonProgress:
         self._print({"event": "frame", **state, "seconds_left": None if left is None else round(left, 1)})
 
     def child_event(self, name, event):
+        if event["event"] == "progress":
+            now = time.monotonic()
+            if now - self._last_progress < 1.0:
+                return
+            self._last_progress = now
         self._print({"source": name, **event})
 
     def message(self, text):
