@@ -112,7 +112,7 @@ def orientations(runs):
              else [(f"{run.name}, peak", run, run.stage_frame("peak")) for run in runs])
     figure = Figure(figsize=(5.4, 3.5), layout="constrained")
     axes = figure.add_subplot(projection="polar")
-    edges = np.linspace(0, 2 * np.pi, 37)
+    edges = np.linspace(0, 2 * np.pi, 25)
     fine = np.linspace(0, 2 * np.pi, 361)
     for (label, run, k), color, line in zip(shown, CYCLE, LINES):
         with h5py.File(run.directory.frame_file(k), "r") as file:
@@ -124,7 +124,7 @@ def orientations(runs):
         counts, _ = np.histogram(np.concatenate([theta, theta + np.pi]) % (2 * np.pi), bins=edges)
         share = counts / counts.mean()
         axes.plot(np.append(edges[:-1], edges[-1]), np.append(share, share[0]), drawstyle="steps-post", color=color,
-                  linestyle=line, linewidth=1.3, label=label)
+                  linestyle=line, linewidth=1.1, label=label)
         axes.plot(fine, 1 + fit.a * np.cos(2 * (fine - fit.theta_0)), color=color, linewidth=0.8)
     axes.set_ylim(bottom=0)
     axes.set_rticks([0.5, 1.0, 1.5] if axes.get_ylim()[1] < 2 else [1.0, 2.0, 3.0])
@@ -158,8 +158,8 @@ def particles(runs):
 def breakages(axes, run):
     second = axes.twinx()
     strain = np.array([100 * row["axial_strain"] for row in run.frames])
-    edges = np.arange(0, np.ceil(strain[-1]) + 1)
-    counts, _ = np.histogram(strain, bins=edges, weights=[run.broken.get(row["frame"], 0) for row in run.frames])
+    edges = np.arange(0, max(1, np.ceil(strain[-1] - 0.05)) + 1)
+    counts, _ = np.histogram(np.minimum(strain, edges[-1]), bins=edges, weights=[run.broken.get(row["frame"], 0) for row in run.frames])
     second.bar(edges[:-1] + 0.5, counts, width=0.8, color=LIGHT, zorder=0)
     second.set_ylabel("breakages per 1 % strain", color=GREY)
     second.set_ylim(0, max(4, 2.5 * counts.max()))

@@ -22,7 +22,7 @@ RESPONSE = (
     (curves.particles, "Particles", "Each breakage adds one particle."),
     (curves.contacts, "Contacts", "Contacts in force."),
     (curves.anisotropies, "Anisotropies", "Second-order Fourier fits (Eqs. 7 to 9)."),
-    (curves.orientations, "Contact orientations", "Share of the contacts in each direction of 10°, relative to an "
+    (curves.orientations, "Contact orientations", "Share of the contacts in each direction of 15°, relative to an "
      "isotropic assembly; thin lines: the fit of Eq. 7."),
 )
 CHECKS = (
