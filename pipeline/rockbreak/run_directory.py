@@ -12,7 +12,7 @@ import yaml
 from .errors import BAD_INPUT, IO_FAILURE, RockbreakError
 from .payload_hash import payload_hash, xxh3_128
 
-DRIVER_FILES = {".lock"}
+DRIVER_FILES = {".lock", "run.jsonl"}  # all that a run leaves which failed before it began
 
 
 class RunDirectory:

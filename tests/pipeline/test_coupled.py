@@ -116,3 +116,5 @@ def test_a_misspelt_key_is_bad_input(tmp_path):
     process = subprocess.run(command(tmp_path / "run", "--set", "contact.fricton=0.4"), capture_output=True, text=True,
                              check=False)
     assert process.returncode == 2 and "friction" in process.stderr and "Traceback" not in process.stderr
+    assert "run.jsonl" in [file.name for file in (tmp_path / "run").iterdir()]
+    assert RunDirectory(tmp_path / "run").is_empty(), "the corrected command starts without --resume"
