@@ -18,11 +18,11 @@ def plot(axes, strain, values, **style):
     axes.plot(*thinned(100 * np.asarray(strain), np.asarray(values)), **style)
 
 
-def finish(figure, axes, runs, legend=None):
+def finish(figure, axes, runs, legend=None, place="best"):
     axes.margins(x=0.01)
     axes.set_xlim(left=0)
     if legend or (legend is None and len(runs) > 1):
-        axes.legend()
+        axes.legend(loc=place)
     return figure
 
 
@@ -133,9 +133,9 @@ def orientations(runs):
     return figure
 
 
-def paper_markers(axes, numbers, label):
-    axes.plot([100 * s for s in numbers], list(numbers.values()), "D", color=INK, markerfacecolor="white",
-              markersize=6, label=label, zorder=5)
+def paper_markers(axes, numbers, label, marker="D"):
+    axes.plot([100 * s for s in numbers], list(numbers.values()), marker, color=INK, markerfacecolor="white",
+              markersize=6, label=label, zorder=5, clip_on=False)
 
 
 def particles(runs):
@@ -178,8 +178,11 @@ def contacts(runs):
     shown = [run for run in runs if paper.applies_to(run.case)]
     for breakable in sorted({run.breakable for run in shown}):
         paper_markers(axes, paper.CONTACTS_2MPA[breakable],
-                      "Raisianzadeh et al., " + ("breakable" if breakable else "non-breakable"))
-    return finish(figure, axes, runs, legend=len(runs) > 1 or bool(shown))
+                      "Raisianzadeh et al., " + ("breakable" if breakable else "non-breakable"),
+                      "D" if breakable else "o")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + (0.3 if shown or len(runs) > 1 else 0.0) * (high - low))  # room for the legend
+    return finish(figure, axes, runs, legend=len(runs) > 1 or bool(shown), place="upper left")
 
 
 def void_ratio(runs):
