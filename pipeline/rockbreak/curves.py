@@ -159,7 +159,8 @@ def breakages(axes, run):
     second = axes.twinx()
     strain = np.array([100 * row["axial_strain"] for row in run.frames])
     edges = np.arange(0, max(1, np.ceil(strain[-1] - 0.05)) + 1)
-    counts, _ = np.histogram(np.minimum(strain, edges[-1]), bins=edges, weights=[run.broken.get(row["frame"], 0) for row in run.frames])
+    counts, _ = np.histogram(np.minimum(strain, edges[-1]), bins=edges,
+                             weights=[run.broken.get(row["frame"], 0) for row in run.frames])
     second.bar(edges[:-1] + 0.5, counts, width=0.8, color=LIGHT, zorder=0)
     second.set_ylabel("breakages per 1 % strain", color=GREY)
     second.set_ylim(0, max(4, 2.5 * counts.max()))
@@ -263,5 +264,6 @@ def phases(runs):
     axes.set_yticks(range(len(runs)), [run.name for run in runs])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    axes.legend(ncol=2 if len(runs) == 1 else 4, loc="upper center", bbox_to_anchor=(0.5, -0.3 if len(runs) > 2 else -0.45))
+    axes.legend(ncol=2 if len(runs) == 1 else 4, loc="upper center",
+                bbox_to_anchor=(0.5, -0.3 if len(runs) > 2 else -0.45))
     return figure

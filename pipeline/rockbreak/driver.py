@@ -296,7 +296,8 @@ def drive(options, progress):
     directory = RunDirectory(options.out)
     with directory.lock() as lock:
         if not options.resume and not directory.is_empty():
-            raise RockbreakError(BAD_INPUT, f"{options.out}: is not empty; go on with --resume, or choose another --out")
+            raise RockbreakError(BAD_INPUT, f"{options.out}: is not empty; go on with --resume, or choose another "
+                                 "--out")
         signal.signal(signal.SIGINT, _raise_interrupted)
         signal.signal(signal.SIGTERM, _raise_interrupted)
         with Ledger(directory.ledger_file) as ledger, progress:

@@ -1,4 +1,4 @@
-"""Fabric and force anisotropies of one contact state: second-order Fourier fits, Eqs. 7-11 of Raisianzadeh et al. (2019).
+"""Fabric and force anisotropies of one contact state: second-order Fourier fits, Eqs. 7-10 of the paper.
 
 E(theta)   = 1/(2 pi) [1 + a cos 2(theta - theta_0)]      (7)  contact orientations
 f_n(theta) = f_0 [1 + a_n cos 2(theta - theta_n)]         (8)  mean normal force

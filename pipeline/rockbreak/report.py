@@ -92,7 +92,7 @@ def write_report(runs, target):
 
 
 def strongest(pictures):
-    """Normal force that gets the strongest shade [N]: the 99.5 % quantile, so that one contact does not pale the rest."""
+    """Normal force that gets the strongest shade [N]: a quantile, so that one contact does not pale the rest."""
     forces = np.concatenate([picture.normal_force for picture in pictures])
     return float(np.quantile(forces, 0.995)) if len(forces) and forces.max() > 0 else 1.0
 

@@ -50,6 +50,7 @@ def test_a_missing_ledger_has_no_events(tmp_path):
 
 
 def test_seconds_are_summed_per_phase_over_all_resumptions():
-    events = [{"event": "frame", "seconds": {"dem": 1.0}}, {"event": "split", "seconds": {"xfem": 0.5, "handover": 0.1}},
-              {"event": "end"}, {"event": "frame", "seconds": {"dem": 2.0}}, {"event": "report", "seconds": {"report": 4}}]
+    events = [{"event": "frame", "seconds": {"dem": 1.0}},
+              {"event": "split", "seconds": {"xfem": 0.5, "handover": 0.1}}, {"event": "end"},
+              {"event": "frame", "seconds": {"dem": 2.0}}, {"event": "report", "seconds": {"report": 4}}]
     assert seconds_per_phase(events) == {"dem": 3.0, "xfem": 0.5, "handover": 0.1, "report": 4.0, "total": 7.6}

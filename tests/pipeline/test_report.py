@@ -106,8 +106,8 @@ def test_warnings_that_differ_by_numbers_alone_are_told_once():
 
         @staticmethod
         def ledger():
-            texts = ["frame 1: 3 particles are out of balance by 1.5e-3", "frame 2: 12 particles are out of balance by 7",
-                     "the servo saturated"]
+            texts = ["frame 1: 3 particles are out of balance by 1.5e-3",
+                     "frame 2: 12 particles are out of balance by 7", "the servo saturated"]
             return [{"event": "start"}] + [{"event": "warning", "source": "xfem", "text": text} for text in texts]
 
     assert warnings([Run]) == [
