@@ -286,6 +286,11 @@ class Run {
 }  // namespace
 
 RunEnd run(const common::Scene& scene, const RunOptions& options, const RunPorts& ports) {
+  if (scene.output.keep_frames != 0) {
+    throw common::bad_input(
+        fmt::format("output.keep_frames: found {}, expected all: every frame holds a part of the history",
+                    scene.output.keep_frames));
+  }
   return Run(scene, options, ports)();
 }
 

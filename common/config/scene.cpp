@@ -205,7 +205,7 @@ void bind_output(Specification& keys, OutputOptions& output) {
   count("output.durability", output.durability.interval, "none", "every",
         "fsync after every file, every N-th, or none; a killed process loses nothing either way, a power cut may");
   count("output.keep_frames", output.keep_frames, "all", "",
-        "frames that stay on disk: all, or the newest N with the first and the last");
+        "frames that stay on disk; a run takes only all, since every frame holds a part of the history");
 }
 
 Specification specification(Scene& scene) {

@@ -104,7 +104,7 @@ struct BreakageOptions {
 
 struct OutputOptions {
   Durability durability;  ///< none | every | N
-  int keep_frames = 0;    ///< 0: all; n: the newest n (and the first and last)
+  int keep_frames = 0;    ///< 0: all; a run takes nothing else
 };
 
 struct Scene {

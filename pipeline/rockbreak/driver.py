@@ -216,10 +216,6 @@ class Run:
         case = self.directory.case()
         self._breakable = "breakage" in (case.get("effects") or [])
         self._target_strain = (case.get("shear") or {}).get("axial_strain")
-        keep = (case.get("output") or {}).get("keep_frames", "all")
-        if keep not in ("all", 0):
-            raise RockbreakError(BAD_INPUT, f"{self.directory.case_file}: output.keep_frames: found {keep}, expected "
-                                 "all (the report needs the history in every frame)")
         if self._breakable:
             (self.directory.path / "splits").mkdir(exist_ok=True)
             self._broken = 0
