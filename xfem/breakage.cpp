@@ -27,11 +27,6 @@ struct Critical {
   double load_factor = std::numeric_limits<double>::infinity();
 };
 
-Vec2 element_centroid(const Mesh& mesh, int element) {
-  const auto& [a, b, c] = mesh.triangles[element];
-  return (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
-}
-
 /// Pieces of the particle along a line, if both are large enough.
 std::optional<common::ChordSplit> split_into_fragments(const ParticleModel& model, const BreakageParameters& parameters,
                                                        const Vec2& first, const Vec2& last) {
@@ -58,7 +53,8 @@ class Analysis {
         rules_{parameters.rock, std::max(kLigamentInDiameters * diameter_, kLigamentInElements * mesh_.size),
                parameters.literal},
         solver_(model.elastic, loads, parameters.literal ? 0 : parameters.load_patch * diameter_),
-        cracks_(cracks.begin(), cracks.end()) {
+        stored_(cracks.begin(), cracks.end()),
+        cracks_(stored_) {
     result_.unbalance = IntactModel::unbalance(loads);
   }
 
@@ -83,6 +79,7 @@ class Analysis {
   double diameter_;
   GrowthRules rules_;
   CrackedSolver solver_;
+  const std::vector<Crack> stored_;
   std::vector<Crack> cracks_;
   CrackedState state_;
   std::set<int> no_start_;  ///< elements in which a crack would only cut off a corner
@@ -129,6 +126,15 @@ bool Analysis::restore_cracks() {
     }
   }
   std::erase_if(cracks_, [](const Crack& crack) { return crack.points.size() < 2; });
+  // The crack that a tip once ran into may be gone: it was the parent's, of which this particle is a fragment.
+  const std::vector<int> cutting = cutting_cracks(mesh_, cracks_);
+  for (Crack& crack : cracks_) {
+    for (int end = 0; end < 2; ++end) {
+      if (crack.tips[end] != TipState::at_crack) continue;
+      const int ahead = element_ahead(mesh_, crack, end);
+      if (ahead >= 0 && cutting[ahead] < 0) crack.tips[end] = TipState::active;
+    }
+  }
   return true;
 }
 
@@ -246,7 +252,7 @@ bool Analysis::start_next_crack() {
       if (cutting[t] >= 0 || no_start_.contains(t)) continue;
       const double factor = load_factor(parameters_.rock, stress[t]);
       if (factor > 1 || factor >= critical.load_factor) continue;
-      const Vec2 center = element_centroid(mesh_, t);
+      const Vec2 center = mesh_.centroid(t);
       const bool is_near = std::any_of(cracks_.begin(), cracks_.end(), [&](const Crack& crack) {
         return std::any_of(crack.points.begin(), crack.points.end(), [&](const CrackPoint& point) {
           return (point.position - center).squaredNorm() < spacing * spacing;
@@ -275,7 +281,6 @@ BreakageResult Analysis::run() {
     if (factor < critical.load_factor) critical = {t, factor};
   }
   result_.min_safety_factor = critical.load_factor;
-  result_.critical_element = critical.element;
   if (critical.element >= 0) {
     const PrincipalStress p = principal(intact_average[critical.element]);
     result_.failure_mode = parameters_.rock.mode(p.s1, p.s3);
@@ -293,7 +298,8 @@ BreakageResult Analysis::run() {
     const bool failed_somewhere = !cracks_.empty() || critical.load_factor <= 1;
     result_.status = failed_somewhere ? ParticleStatus::arrested : ParticleStatus::intact;
   }
-  result_.cracks = std::move(cracks_);
+  // What was not analysed to its end keeps the cracks that it had.
+  result_.cracks = result_.status == ParticleStatus::refused ? stored_ : std::move(cracks_);
   return std::move(result_);
 }
 

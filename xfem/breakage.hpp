@@ -38,7 +38,6 @@ struct BreakageResult {
   std::string reason;            ///< of a refusal or an arrest, else empty
   Stress mean_stress;            ///< area average over the elements, body frame, compression positive
   double min_safety_factor = 0;  ///< smallest load factor of the uncracked averaged field, +inf if unloaded
-  int critical_element = -1;     ///< where it stands
   FailureMode failure_mode = FailureMode::none;
   std::vector<Crack> cracks;                ///< all cracks after the analysis (also of a broken particle)
   std::optional<std::array<Vec2, 2>> path;  ///< breakage line, body frame, if broken

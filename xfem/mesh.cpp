@@ -126,6 +126,11 @@ int Mesh::local_edge(int t, int a, int b) const {
   return -1;
 }
 
+Vec2 Mesh::centroid(int t) const {
+  const auto& [a, b, c] = triangles[t];
+  return (nodes[a] + nodes[b] + nodes[c]) / 3;
+}
+
 int Mesh::locate(const Vec2& point) const {
   // A point within rounding of an edge belongs to both sides, the lower index wins.
   constexpr double kTolerance = 1e-12;

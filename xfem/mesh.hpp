@@ -27,6 +27,7 @@ struct Mesh {
   /// Local number (0..2) of the edge of triangle `t` that lies between nodes a and b (the edge opposite to that local
   /// node); -1 if there is none.
   int local_edge(int t, int a, int b) const;
+  Vec2 centroid(int t) const;
   /// Triangle that contains `point` (the nearest one if it is outside by rounding), lowest index on ties.
   int locate(const Vec2& point) const;
 };

@@ -12,8 +12,7 @@ std::vector<FaceSegment> face_segments(const Mesh& mesh, std::span<const Element
     faces[i].normal = common::perpendicular(along) / faces[i].length;
   }
   for (const CutElement& element : enrichment.cut) {
-    const auto& triangle = mesh.triangles[element.element];
-    const Vec2 center = (mesh.nodes[triangle[0]] + mesh.nodes[triangle[1]] + mesh.nodes[triangle[2]]) / 3;
+    const Vec2 center = mesh.centroid(element.element);
     for (const CutElement::Term& term : element.terms) {
       const int index = element.segments[term.slot];
       const CrackSegment& segment = enrichment.segments[index];

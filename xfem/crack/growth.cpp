@@ -13,11 +13,6 @@ using common::cross;
 
 const double kHalfRoot = std::sqrt(0.5);
 
-Vec2 element_centroid(const Mesh& mesh, int element) {
-  const auto& [a, b, c] = mesh.triangles[element];
-  return (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
-}
-
 /// A crack seen from one end: its tip is the last point.
 Crack oriented(const Crack& crack, int end) {
   Crack result = crack;
@@ -49,7 +44,7 @@ std::vector<int> elements_ahead(const Mesh& mesh, std::span<const int> cutting, 
     for (int i = mesh.element_offset[node]; i < mesh.element_offset[node + 1]; ++i) {
       const int t = mesh.node_elements[i];
       if (cutting[t] >= 0 || std::find(found.begin(), found.end(), t) != found.end()) continue;
-      if ((element_centroid(mesh, t) - tip.position).dot(direction) > 0) found.push_back(t);
+      if ((mesh.centroid(t) - tip.position).dot(direction) > 0) found.push_back(t);
     }
   }
   return found;
@@ -165,7 +160,7 @@ std::optional<Crack> start_crack(const Mesh& mesh, const GrowthRules& rules, std
                                  int element) {
   const HoekBrown::Planes planes = rules.rock.planes(principal(stress[element]));
   const auto& triangle = mesh.triangles[element];
-  const Vec2 center = element_centroid(mesh, element);
+  const Vec2 center = mesh.centroid(element);
   std::optional<Crack> best;
   double best_need = -1;
   for (const Vec2& along : {planes.first, planes.second}) {

@@ -16,8 +16,8 @@ struct Stress {
 };
 
 struct PrincipalStress {
-  double s1 = 0, s3 = 0;            ///< major and minor [Pa], s1 >= s3
-  Vec2 direction1{1, 0};            ///< unit vector of s1; (1, 0) for a hydrostatic state
+  double s1 = 0, s3 = 0;  ///< major and minor [Pa], s1 >= s3
+  Vec2 direction1{1, 0};  ///< unit vector of s1; (1, 0) for a hydrostatic state
 };
 PrincipalStress principal(const Stress& stress);
 

@@ -9,10 +9,7 @@ namespace xfem {
 StressAverage::StressAverage(const Mesh& mesh, double radius) {
   const int elements = static_cast<int>(mesh.triangles.size());
   std::vector<Vec2> centroid(elements);
-  for (int t = 0; t < elements; ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    centroid[t] = (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
-  }
+  for (int t = 0; t < elements; ++t) centroid[t] = mesh.centroid(t);
   // Sorted by x, so that only a strip of candidates is looked at.
   std::vector<int> order(elements);
   for (int t = 0; t < elements; ++t) order[t] = t;

@@ -28,17 +28,12 @@ LabSetup setup_of(const common::LabTest& test) {
   }
 }
 
-Vec2 element_centroid(const Mesh& mesh, int element) {
-  const auto& t = mesh.triangles[element];
-  return (mesh.nodes[t[0]] + mesh.nodes[t[1]] + mesh.nodes[t[2]]) / 3;
-}
-
 }  // namespace
 
 LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const auto start = std::chrono::steady_clock::now();
   BreakageParameters parameters = breakage_parameters(test.material, test.breakage);
-  parameters.load_patch = setup.load_patch;
+  parameters.load_patch = parameters.literal ? 0 : setup.load_patch;
   const ParticleModel model(setup.outline, test.mesh_nodes, elastic_constants(test.material),
                             parameters.initiation_radius);
   const std::vector<Load> loads = setup.loads(model.elastic.mesh());
@@ -46,7 +41,7 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   LabResult result;
   result.rock = parameters.rock;
   result.mesh = model.elastic.mesh();
-  const double patch = setup.load_patch * common::equivalent_diameter(model.area);
+  const double patch = parameters.load_patch * common::equivalent_diameter(model.area);
   const std::vector<Stress> unit =
       model.elastic.stresses(model.elastic.solve(model.elastic.nodal_forces(loads, patch)));
   const std::vector<Stress> averaged = model.average(unit);
@@ -71,7 +66,7 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   result.element_stress = at_first_failure(unit);
   result.averaged_stress = at_first_failure(averaged);
   if (critical >= 0) {
-    result.first_failure_point = element_centroid(result.mesh, critical);
+    result.first_failure_point = result.mesh.centroid(critical);
     std::vector<Crack> cracks;
     const double first = smallest * (1 + kJustAbove);
     for (double factor = first; factor <= kLargestLoadRatio * first; factor *= 1 + kLoadStep) {

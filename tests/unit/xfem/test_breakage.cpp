@@ -215,6 +215,32 @@ TEST_CASE("What cannot be analysed is refused with its reason") {
   CHECK(broken_loads.status == ParticleStatus::refused);
 }
 
+TEST_CASE("A refused particle keeps the cracks that it had") {
+  const ParticleModel model = block();
+  const Mesh& mesh = model.elastic.mesh();
+  const std::array<Vec2, 2> line{Vec2(-0.03, -0.1), Vec2(0.02, 0.1)};
+  // The first tip claims to be on the boundary, which an analysis corrects; the second crack fits no mesh.
+  std::vector<Crack> cracks{place_polyline(mesh, line, {TipState::active, TipState::active})};
+  cracks[0].tips[0] = TipState::at_boundary;
+  cracks.emplace_back();
+  cracks[1].points = {point_on_edge(mesh, 0, 1, 0.5), point_on_edge(mesh, 2, 3, 0.5)};
+  const BreakageResult result = analyse(model, opposite_forces(1e6), cracks, without_floor());
+  REQUIRE(result.status == ParticleStatus::refused);
+  REQUIRE(result.cracks.size() == 2);
+  CHECK(result.cracks[0].tips == cracks[0].tips);
+}
+
+TEST_CASE("A tip whose other crack went with the parent's path grows again") {
+  const ParticleModel model = block(300);
+  const std::array<Vec2, 2> line{Vec2(-0.03, -0.25), Vec2(-0.03, -0.02)};
+  const std::vector<Crack> cracks{
+      place_polyline(model.elastic.mesh(), line, {TipState::at_boundary, TipState::at_crack})};
+  BreakageParameters parameters = without_floor();
+  parameters.max_cracks = 1;
+  const std::vector<Load> loads = horizontal_stress(model.elastic.mesh(), -4e6);
+  CHECK(analyse(model, loads, cracks, parameters).status == ParticleStatus::broken);
+}
+
 TEST_CASE("One unbalanced contact is carried by inertia") {
   const ParticleModel model = block();
   const std::vector<Load> loads{{{0, 0.25}, {0, -1e6}}};

@@ -60,6 +60,14 @@ TEST_CASE("strength scales with the rock's and not with its stiffness") {
   CHECK(xfem::run(xfem::brazilian_test(test), test).first_failure_load == Approx(2 * load).epsilon(1e-12));
 }
 
+TEST_CASE("the literal reading has point loads, whatever patch is asked for") {
+  common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  test.breakage.literal = true;
+  const double point = xfem::run(xfem::brazilian_test(test), test).first_failure_load;
+  test.loading.patch = 0.1;
+  CHECK(xfem::run(xfem::brazilian_test(test), test).first_failure_load == point);
+}
+
 TEST_CASE("a laboratory test leaves a summary with the agreed keys, a file and a figure") {
   const sample::Directory directory("lab");
   const common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
