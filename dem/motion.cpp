@@ -10,7 +10,7 @@ void advance(State& state, const BodyForces& forces, const StrainRate& rate, boo
     if (p.boundary[i]) {
       const Vec2 velocity(-rate.xx * p.position[i].x(), -rate.yy * p.position[i].y());
       // The boundary pushes with the opposite of what the contacts do to it.
-      work -= 0.5 * forces.force[i].dot(p.velocity[i] + velocity) * dt;
+      work -= 0.5 * (forces.force[i].dot(p.velocity[i] + velocity) + forces.moment[i] * p.angular_velocity[i]) * dt;
       p.velocity[i] = velocity;
       p.angular_velocity[i] = 0;
     } else {

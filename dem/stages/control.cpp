@@ -113,11 +113,8 @@ void renew_ring(Engine& engine) {
   const double energy_before = kinetic_energy(p) + elastic_energy(state, engine.constants());
   state.ring = ring_of(p);
   std::fill(p.boundary.begin(), p.boundary.end(), std::uint8_t{0});
-  for (const std::int32_t i : state.ring) {
-    p.boundary[i] = 1;
-    p.velocity[i].setZero();
-    p.angular_velocity[i] = 0;
-  }
+  // Velocities stay: the next step sets them, and its work is the mean over the velocities before and after.
+  for (const std::int32_t i : state.ring) p.boundary[i] = 1;
   engine.restart();
   state.energy.boundary_work += kinetic_energy(p) + elastic_energy(state, engine.constants()) - energy_before;
 }
