@@ -22,6 +22,8 @@ struct Entry {
 
 constexpr Entry kEntries[] = {
     {"phase_start", "s", "time at which the phase of the run began", &Control::phase_start},
+    {"hold_below", "-", "void ratio at which densification tries to hold", &Control::hold_below},
+    {"low_friction", "-", "friction that densification had reached then", &Control::low_friction},
     {"stretch_x", "-", "stretch of the boundary along x since the start of shear", &Control::stretch_x},
     {"stretch_y", "-", "stretch of the boundary along y since the start of shear", &Control::stretch_y},
     {"steps_to_ring", "-", "steps until the boundary ring is found anew", &Control::steps_to_ring},

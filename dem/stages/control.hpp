@@ -16,7 +16,9 @@ common::Stage stage_of(Phase phase);
 
 struct Control {
   Phase phase = Phase::compaction;
-  double phase_start = 0;  ///< time at which the phase began [s]
+  double phase_start = 0;   ///< time at which the phase began [s]
+  double hold_below = 0;    ///< void ratio at which densification tries to hold
+  double low_friction = 0;  ///< friction that densification had reached then
   Servo servo_x, servo_y;
   double stretch_x = 1;  ///< of the boundary since the start of shear
   double stretch_y = 1;

@@ -14,11 +14,12 @@ constexpr double kContactStress = 0.02;    // of the pressure: particles touch
 constexpr double kContactsEach = 0.75;     // contacts per particle: they touch, however stiff they are
 constexpr double kRelaxed = 0.05;          // unbalanced force at which relaxation ends
 constexpr double kPressureReached = 0.01;  // relative error of both stresses
-constexpr double kPressureFollowed = 0.1;
+constexpr double kPressureFollowed = 0.03;
 constexpr double kPressureHeld = 0.003;
 constexpr int kRingInterval = 50;
 constexpr int kServoInterval = 10;
 constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves the friction
+constexpr double kFirstTry = 0.006;        // above the target: a sample gets denser while it comes to rest
 constexpr double kLowestFriction = 0.002;
 constexpr double kLongestPhase = 20;  // [s] of simulated time
 
@@ -96,26 +97,42 @@ void Preparation::steer() {
   const double error = std::max(std::abs(stress[0] / p - 1), std::abs(stress[1] / p - 1));
 
   if (control_.phase == Phase::confinement) {
-    if ((error < kPressureReached && engine_.health().unbalanced_force < 0.01) || late) enter(Phase::densification);
+    if ((error < kPressureReached && engine_.health().unbalanced_force < 0.01) || late) {
+      control_.hold_below = scene_.preparation.void_ratio + kFirstTry;
+      control_.low_friction = state.friction;
+      enter(Phase::densification);
+    }
   } else if (control_.phase == Phase::densification) {
     // The servo must follow: a sample that lost its pressure would lose its friction for nothing.
     if (error > kPressureFollowed && !late) return;
-    if (target_void_ratio_error() <= 0) {
+    if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below) {
       enter(Phase::hold);
     } else if (state.friction < kLowestFriction || late) {
-      warning_ =
-          fmt::format("void ratio {:.4f} not reached: {:.4f} at friction {:.3f}; the sample is used as it is",
-                      scene_.preparation.void_ratio, void_ratio(state, scene_.preparation.definition), state.friction);
       enter(Phase::hold);
     } else {
       engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
+      control_.low_friction = state.friction;
     }
   } else {
     const bool rest = engine_.health().unbalanced_force < scene_.preparation.unbalanced_force;
-    if ((error < kPressureHeld && rest) || late) {
+    const double excess = target_void_ratio_error();
+    if (error < kPressureHeld && rest && excess > 0.5 * scene_.preparation.void_ratio_tolerance &&
+        control_.low_friction > kLowestFriction && !late) {
+      // Still too loose: go on from where densification stopped, and try to hold a little denser.
+      control_.hold_below =
+          std::min(control_.hold_below, void_ratio(state, scene_.preparation.definition)) - 0.5 * excess;
+      engine_.edit().friction = control_.low_friction;
+      enter(Phase::densification);
+    } else if ((error < kPressureHeld && rest) || late) {
       if (late) {
         warning_ = fmt::format("rest not reached in {} s: unbalanced force {:.2e}, stress error {:.2e}", kLongestPhase,
                                engine_.health().unbalanced_force, error);
+      } else if (std::abs(excess) > scene_.preparation.void_ratio_tolerance) {
+        warning_ = fmt::format(
+            "void ratio {:.4f} not met: the sample has {:.4f} ({})", scene_.preparation.void_ratio,
+            void_ratio(state, scene_.preparation.definition),
+            excess > 0 ? "as dense as friction lowered to nothing makes it"
+                       : "denser at rest than when friction was restored, or already at the highest friction");
       }
       enter(Phase::shear);
     }

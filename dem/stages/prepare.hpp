@@ -3,8 +3,9 @@
 //                  2 % of the pressure
 //   relaxation     boundary at rest, until the unbalanced force has died away
 //   confinement    both directions servo-controlled to the pressure, with the preparation's high friction
-//   densification  friction lowered slowly until the void ratio is met
-//   hold           friction of the test, until pressure and unbalanced force are met
+//   densification  friction lowered slowly until the void ratio is nearly met
+//   hold           friction of the test, until pressure and unbalanced force are met; back to densification while the
+//                  sample at rest is still too loose
 #pragma once
 
 #include <string>

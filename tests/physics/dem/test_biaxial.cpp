@@ -1,0 +1,62 @@
+// A whole small test, preparation included: what a sample must satisfy before anyone looks at its strength.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "dem/history.hpp"
+#include "dem/measures.hpp"
+#include "dem/stages/generate.hpp"
+#include "dem/stages/prepare.hpp"
+#include "dem/stages/shear.hpp"
+
+namespace {
+
+common::Scene small_scene() {
+  common::Scene scene;
+  scene.effects = {true, true, true, false};
+  scene.assembly.particles = 300;
+  scene.preparation.confining_pressure = 2e6;
+  scene.preparation.void_ratio = 0.29;
+  scene.shear.axial_strain = 0.02;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("A prepared sample is at rest at its pressure and void ratio, and its energy ledger closes in shear") {
+  const common::Scene scene = small_scene();
+  const double p = scene.preparation.confining_pressure;
+  dem::State start;
+  start.particles = dem::generate_assembly(scene.assembly, scene.material.density, scene.seed);
+  start.friction = scene.preparation.initial_friction;
+  start.next_id = static_cast<std::int64_t>(start.particles.size());
+  dem::Engine engine(scene, start);
+  dem::Control control;
+  dem::Preparation preparation(scene, engine, control);
+  while (control.phase != dem::Phase::shear) preparation.step();
+
+  CHECK(engine.health().unbalanced_force < scene.preparation.unbalanced_force);
+  const auto stress = dem::mean_stress(engine.state(), dem::ring_area(engine.state()));
+  CHECK(stress[0] == Approx(p).epsilon(0.005));
+  CHECK(stress[1] == Approx(p).epsilon(0.005));
+  // One boundary particle more or less moves the void ratio of so few particles by about 0.005.
+  const double miss =
+      std::abs(dem::void_ratio(engine.state(), scene.preparation.definition) - scene.preparation.void_ratio);
+  CHECK(miss < 0.01);
+  CHECK(preparation.warning().empty() == (miss <= scene.preparation.void_ratio_tolerance));
+
+  dem::Shear::begin(engine, control);
+  dem::Shear shear(scene, engine, control);
+  double square = 0;
+  double rows = 0;
+  while (!shear.finished()) {
+    shear.step();
+    const double error = dem::mean_stress(engine.state(), dem::ring_area(engine.state()))[0] / p - 1;
+    square += error * error;
+    rows += 1;
+  }
+  // Axial strain is 1 - H/H0 of the boundary's affine motion.
+  CHECK(control.axial_strain() == Approx(0.02).epsilon(1e-3));
+  CHECK(std::sqrt(square / rows) < 0.03);
+  // The ring was found anew many times on the way: a half step of boundary work lost each time would be 1e-3.
+  CHECK(std::abs(dem::energy_residual(engine, control)) < 5e-4 * engine.state().energy.boundary_work);
+}
