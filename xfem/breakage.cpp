@@ -15,9 +15,10 @@ namespace {
 
 using common::ParticleStatus;
 
-/// The ligament rule's reach: the larger of these times De and h.
+/// The ligament rule's reach: the larger of these times De and h. At 1.2 h a crack of a coarse disc stops one element
+/// short of it, in the compression below the load.
 constexpr double kLigamentInDiameters = 0.1;
-constexpr double kLigamentInElements = 1.2;
+constexpr double kLigamentInElements = 1.5;
 /// A new crack keeps this far from the others: the larger of the averaging radius and this times h. Within it the
 /// averaged stress is that of an existing tip, whose own rule decides.
 constexpr double kCrackSpacingInElements = 1.5;

@@ -80,7 +80,7 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
 
 void add_case_options(CLI::App& command, Arguments& arguments) {
   command.add_option("--config", arguments.config, "Scene (YAML)")->required();
-  command.add_option("--threads", arguments.threads, "Threads; 0: one per processor")->check(CLI::NonNegativeNumber);
+  command.add_option("--threads", arguments.threads, "Threads; 0: one per processor")->check(CLI::Range(0, 1024));
   add_overrides(command, arguments);
 }
 

@@ -52,6 +52,15 @@ TEST_CASE("a disc under two forces first fails near Hondros' stress at its centr
   }
 }
 
+TEST_CASE("a coarse disc breaks at first failure: its crack does not stop short of the load points") {
+  for (int nodes : {60, 70, 78, 90}) {
+    const common::LabTest test = laboratory(common::LabTestKind::brazilian, nodes);
+    const xfem::LabResult result = xfem::run(xfem::brazilian_test(test), test);
+    INFO(nodes << " nodes");
+    CHECK(result.breakage_load < 1.02 * result.first_failure_load);
+  }
+}
+
 TEST_CASE("strength scales with the rock's and not with its stiffness") {
   common::LabTest test = laboratory(common::LabTestKind::brazilian, 150);
   const double load = xfem::run(xfem::brazilian_test(test), test).first_failure_load;
