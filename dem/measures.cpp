@@ -1,13 +1,25 @@
 #include "dem/measures.hpp"
 
-#include <algorithm>
-
 #include "common/math/arc_tangent.hpp"
 
 namespace dem {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
+
+/// True if the polygon of the ring centroids goes around `point` (crossings of the ray to the right).
+bool inside_ring(const State& state, const Vec2& point) {
+  const std::vector<Vec2>& at = state.particles.position;
+  bool inside = false;
+  for (std::size_t k = 0; k < state.ring.size(); ++k) {
+    const Vec2& p = at[state.ring[k]];
+    const Vec2& q = at[state.ring[k + 1 < state.ring.size() ? k + 1 : 0]];
+    if ((p.y() > point.y()) == (q.y() > point.y())) continue;
+    const double side = common::cross(q - p, point - p);
+    if ((q.y() > p.y()) == (side > 0)) inside = !inside;
+  }
+  return inside;
+}
 
 /// Interior angle at `at` of a counter-clockwise polygon, in [0, 2 pi).
 double interior_angle(const Vec2& before, const Vec2& at, const Vec2& after) {
@@ -33,9 +45,12 @@ double ring_area(const State& state) {
 
 VoidRatios void_ratios(const State& state) {
   const Particles& particles = state.particles;
+  std::vector<std::uint8_t> held(particles.size(), 0);
+  for (const Contact& contact : state.contacts) held[contact.a] = held[contact.b] = 1;
   double interior = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (!particles.boundary[i]) interior += particles.area[i];
+    if (particles.boundary[i]) continue;
+    if (held[i] || inside_ring(state, particles.position[i])) interior += particles.area[i];
   }
   double rim = 0;
   const std::size_t count = state.ring.size();
@@ -67,18 +82,6 @@ std::array<double, 3> mean_stress(const State& state, double assembly_area) {
     xy += 0.5 * (force.x() * branch.y() + force.y() * branch.x());
   }
   return {xx / assembly_area, yy / assembly_area, xy / assembly_area};
-}
-
-Vec2 ring_extent(const State& state) {
-  if (state.ring.empty()) return Vec2::Zero();
-  Vec2 low = state.particles.position[state.ring[0]];
-  Vec2 high = low;
-  for (const std::int32_t i : state.ring) {
-    const Vec2& p = state.particles.position[i];
-    low = {std::min(low.x(), p.x()), std::min(low.y(), p.y())};
-    high = {std::max(high.x(), p.x()), std::max(high.y(), p.y())};
-  }
-  return high - low;
 }
 
 }  // namespace dem

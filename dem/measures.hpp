@@ -10,7 +10,8 @@ namespace dem {
 /// Area of the polygon that joins the ring centroids [m^2].
 double ring_area(const State& state);
 
-/// The three void ratios (DESIGN section 2, Preparation).
+/// The three void ratios (DESIGN section 2, Preparation). Particles that have left the assembly, outside the ring and
+/// touching nothing, count in none.
 struct VoidRatios {
   double e1 = 0;  ///< ring polygon / solids inside it - 1, boundary particles counted by interior angle / (2 pi)
   double e2 = 0;  ///< e1 with the overlaps subtracted from the solids
@@ -21,8 +22,5 @@ VoidRatios void_ratios(const State& state);
 /// Mean stress (xx, yy, xy), compression positive [Pa], Eq. 13: (1/A) sum f_i l_j over the contacts in force, branch
 /// vectors between centroids, A the ring polygon.
 std::array<double, 3> mean_stress(const State& state, double assembly_area);
-
-/// Largest extent of the ring centroids along x and y [m].
-Vec2 ring_extent(const State& state);
 
 }  // namespace dem

@@ -10,7 +10,8 @@
 namespace dem {
 namespace {
 
-// Ball of the ring search, in mean spacings: smaller ones fall into the assembly, larger ones bridge over hollows.
+// Ball of the ring search, in mean spacings of the original particles: smaller ones fall into the assembly, larger ones
+// bridge over hollows.
 constexpr double kBallRadius = 1.5;
 
 struct Entry {
@@ -43,8 +44,12 @@ common::Column column(const std::string& name, const char* unit, const char* des
 std::vector<std::int32_t> ring_of(const Particles& p) {
   double area = 0;
   for (const double a : p.area) area += a;
+  // Fragments do not count: the boundary never breaks, and a ball that shrank as others do would trace deeper dents.
+  std::vector<std::int64_t> originals = p.root;
+  std::sort(originals.begin(), originals.end());
+  const auto count = std::unique(originals.begin(), originals.end()) - originals.begin();
   // Centres of particles that fill about four fifths of the plane.
-  const double spacing = std::sqrt(1.25 * area / static_cast<double>(p.size()));
+  const double spacing = std::sqrt(1.25 * area / static_cast<double>(count));
   return find_ring(p.position, kBallRadius * spacing);
 }
 

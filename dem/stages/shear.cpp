@@ -73,8 +73,4 @@ bool Shear::frame_due() const {
   return control_.axial_strain() >= strain - kStrainRounding;
 }
 
-bool Shear::finished() const {
-  return control_.axial_strain() >= scene_.shear.axial_strain - kStrainRounding;
-}
-
 }  // namespace dem

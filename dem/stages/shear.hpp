@@ -18,7 +18,6 @@ class Shear {
 
   /// True when the state has reached the axial strain of frame `control.next_frame`.
   bool frame_due() const;
-  bool finished() const;
   /// Number of the last frame of the test.
   std::int64_t last_frame() const;
 

@@ -38,7 +38,26 @@ TEST_CASE("ring polygon and void ratios of a square lattice have their hand valu
   contact.overlap_area = 0.1;
   state.contacts.assign(2, contact);
   CHECK(dem::void_ratios(state).e2 == Approx(4 / 1.8 - 1).epsilon(1e-14));
-  CHECK(dem::ring_extent(state) == Vec2(2, 2));
+}
+
+TEST_CASE("a particle that has left the assembly counts in no void ratio, one that touches it does") {
+  dem::State state = lattice();
+  const auto whole = dem::void_ratios(state);
+  auto& p = state.particles;
+  for (const Vec2& at : {Vec2(110, -49), Vec2(101, -40), Vec2(90, -50), Vec2(99, -52)}) {
+    p.id.push_back(static_cast<std::int64_t>(p.size()));
+    p.position.push_back(at);
+    p.area.push_back(0.5);
+    p.boundary.push_back(0);
+    const auto e = dem::void_ratios(state);
+    CHECK(e.e1 == whole.e1);
+    CHECK(e.e4 == whole.e4);
+  }
+  dem::Contact contact;
+  contact.a = 8;
+  contact.b = 9;
+  state.contacts.push_back(contact);
+  CHECK(dem::void_ratios(state).e4 == Approx(4 / 1.0 - 1).epsilon(1e-14));
 }
 
 TEST_CASE("interior angles above pi count as such") {
