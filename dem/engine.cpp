@@ -1,9 +1,12 @@
 #include "dem/engine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/error.hpp"
 #include "dem/effects/local_damping.hpp"
 
 namespace dem {
@@ -29,6 +32,10 @@ void Engine::restart() {
   const Particles& p = state_.particles;
   work_.outlines.radius.resize(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.outline(i).size() > std::size_t{common::kMaxParticleVertices}) {
+      throw common::bad_input(fmt::format("particle {}: its outline has {} vertices, expected at most {}", p.id[i],
+                                          p.outline(i).size(), common::kMaxParticleVertices));
+    }
     work_.outlines.radius[i] = common::radius_about(p.outline(i), Vec2::Zero());
   }
   state_.time_step = stable_time_step();

@@ -26,7 +26,8 @@ class Engine {
   State& edit() { return state_; }
 
   /// Forgets every cache, chooses the time step and evaluates the contacts without slip. Called at each frame, also
-  /// in an uninterrupted run, so that a resumed one goes on identically.
+  /// in an uninterrupted run, so that a resumed one goes on identically. Throws bad_input naming a particle with more
+  /// than common::kMaxParticleVertices vertices.
   void restart();
 
   /// One time step with the boundary moving at `rate`. Afterwards contacts and forces belong to the new positions.

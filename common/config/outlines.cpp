@@ -10,9 +10,13 @@
 #include "common/config/specification.hpp"
 #include "common/config/values.hpp"
 #include "common/error.hpp"
+#include "common/geometry/overlap.hpp"
 
 namespace common {
 namespace {
+
+// A fragment may have a vertex more than its parent; several generations must stay below the contacts' limit.
+constexpr std::size_t kMostCorners = kMaxParticleVertices - 4;
 
 double read_coordinate(const Value& value, const std::string& path) {
   const auto number = value.is_scalar() && !value.quoted ? parse_number(value.text) : std::nullopt;
@@ -21,7 +25,8 @@ double read_coordinate(const Value& value, const std::string& path) {
 }
 
 void check_outline(const Polygon& outline, std::size_t index, const std::string& where, const std::string& path) {
-  const std::string defect = outline_defect(outline);
+  std::string defect = outline_defect(outline);
+  if (outline.size() > kMostCorners) defect = "has more than " + std::to_string(kMostCorners) + " vertices";
   if (defect.empty()) return;
   throw bad_input(where + ": " + path + ": outline " + std::to_string(index) + " (counted from 0): " + defect +
                   "; expected a convex outline, counter-clockwise");

@@ -30,5 +30,7 @@ struct Overlap {
 Overlap overlap(PolygonView a, PolygonView b);
 
 inline constexpr int kMaxOverlapVertices = 128;
+/// Most vertices of one particle.
+inline constexpr int kMaxParticleVertices = kMaxOverlapVertices / 2;
 
 }  // namespace common

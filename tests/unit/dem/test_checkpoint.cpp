@@ -9,6 +9,7 @@
 #include "dem/engine.hpp"
 #include "dem/stages/control.hpp"
 #include "dem/stages/generate.hpp"
+#include "tests/unit/dem/bodies.hpp"
 
 using common::Vec2;
 namespace fs = std::filesystem;
@@ -130,4 +131,12 @@ TEST_CASE("a checkpoint that lacks a value is refused by the name of the dataset
   common::Frame bad = good;
   bad.ring[0] = 1000;
   CHECK_THROWS_WITH(dem::to_state(bad), Catch::Matchers::Contains("1000"));
+}
+
+TEST_CASE("an outline with more vertices than a contact can take is refused, not overrun") {
+  dem::State state;
+  common::Polygon outline;
+  for (int k = 0; k < 65; ++k) outline.push_back(common::Rotation(k * 6.283185307179586 / 65) * Vec2(0.2, 0));
+  bodies::add(state, outline, Vec2(0, 0));
+  CHECK_THROWS_WITH(dem::Engine(test_scene(), state), Catch::Matchers::Contains("65 vertices, expected at most 64"));
 }

@@ -74,6 +74,10 @@ TEST_CASE("A wrong outline is reported with its number, vertex and place") {
   CHECK(error("[[[0, 0], [1, a], [1, 1]]]") == "s.yaml:2:25: " + key + "found \"a\", expected a number");
   CHECK(error("[[[0, 0], [1, .nan], [1, 1]]]") == "s.yaml:2:25: " + key + "found .nan, expected a number");
   CHECK(error("[[[0, 0], [1], [1, 1]]]") == "s.yaml:2:21: " + key + "found a list, expected a vertex [x, y]");
+  std::string round;  // 61 points on a parabola: convex, but more than contacts can take
+  for (int i = -30; i <= 30; ++i)
+    round += (round.empty() ? "[" : ", [") + std::to_string(i) + ", " + std::to_string(i * i) + "]";
+  CHECK_THAT(error("[[" + round + "]]"), StartsWith("s.yaml:2:12: " + key + "outline 0") && Contains("60 vertices"));
   CHECK(error("[[0, 0], [1, 0]]") == "s.yaml:2:13: " + key + "found 0, expected a vertex [x, y]");
   CHECK(error("[3]") == "s.yaml:2:12: " + key + "found 3, expected an outline, which is a list of [x, y]");
   CHECK(error("{outlines: 3}") ==
