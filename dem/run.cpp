@@ -64,15 +64,20 @@ class Run {
 
  private:
   RunEnd run() {
-    directory_.write_case(scene_);
     if (options_.resume) {
-      if (std::optional<common::Frame> frame = directory_.newest_frame(hash_)) return resume_shear(*frame);
+      if (std::optional<common::Frame> frame = directory_.newest_frame(hash_)) {
+        directory_.write_case(scene_, RunDirectory::Existing::kept);
+        return resume_shear(*frame);
+      }
     }
     if (!scene_.preparation.from.empty()) {
       start_from_sample();
+      // A refused sample leaves no trace; nothing else was made with a case.yaml that stands here.
+      directory_.write_case(scene_, RunDirectory::Existing::replaced);
     } else if (const auto end = prepare()) {
       return *end;
     }
+    for (const std::string& text : shortcomings_of(scene_, *engine_)) warn(text);
     Shear::begin(*engine_, control_);
     history_.record(*engine_, control_);
     const std::optional<RunEnd> end = write_frame_and_exchange();
@@ -90,6 +95,11 @@ class Run {
                       scene_.preparation.from, frame.frame));
     }
     control_ = read_control(frame);
+    if (control_.phase != Phase::hold && control_.phase != Phase::shear) {
+      throw common::bad_input(
+          fmt::format("{}: is a checkpoint from the middle of a preparation ({}), expected a prepared sample",
+                      scene_.preparation.from, name_of(control_.phase)));
+    }
     make_engine(to_state(frame));
     engine_->edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;
   }
@@ -99,7 +109,16 @@ class Run {
     const auto begin = Clock::now();
     std::int64_t checkpoint = -1;
     std::optional<common::Frame> found;
-    if (options_.resume) found = directory_.newest_preparation(hash_, checkpoint);
+    if (options_.resume) {
+      if (const auto sample = directory_.prepared_sample(hash_)) {
+        directory_.write_case(scene_, RunDirectory::Existing::kept);
+        take_sample(*sample);
+        return std::nullopt;
+      }
+      found = directory_.newest_preparation(hash_, checkpoint);
+    }
+    // Without anything that was made with it, a case.yaml may be that of another scene.
+    directory_.write_case(scene_, found ? RunDirectory::Existing::kept : RunDirectory::Existing::replaced);
     if (found) {
       control_ = read_control(*found);
       make_engine(to_state(*found));
@@ -120,15 +139,17 @@ class Run {
       }
       if (ports_.interrupted()) return RunEnd::interrupted;
     }
-    if (!preparation.warning().empty()) warn(preparation.warning());
     control_.phase = Phase::hold;
     write_checkpoint(directory_.sample());
     seconds_["preparation"] += seconds_since(begin);
     // A sample read back is what other scenes start from, so this run starts from it as well.
-    const common::Frame sample = common::read_frame(directory_.sample());
+    take_sample(common::read_frame(directory_.sample()));
+    return std::nullopt;
+  }
+
+  void take_sample(const common::Frame& sample) {
     control_ = read_control(sample);
     make_engine(to_state(sample));
-    return std::nullopt;
   }
 
   void write_checkpoint(const fs::path& path) {
@@ -152,6 +173,7 @@ class Run {
     make_engine(to_state(frame));
     control_.next_frame = static_cast<double>(frame.frame + 1);
     if (frame.final) return RunEnd::finished;
+    if (options_.until_frame && frame.frame >= *options_.until_frame) return RunEnd::paused;
     if (scene_.effects.breakage) {
       const fs::path split = directory_.split(frame.frame);
       if (!fs::exists(split)) {
@@ -184,6 +206,7 @@ class Run {
   std::optional<RunEnd> write_frame_and_exchange() {
     const Shear stage(scene_, *engine_, control_);
     common::Frame frame = snapshot();
+    if (frame.frame > 0) require_sound(scene_, frame.history);
     frame.final = frame.frame >= stage.last_frame();
     report_shear();
     const auto write_begin = Clock::now();

@@ -54,6 +54,7 @@ RunDirectory::RunDirectory(fs::path root, bool resume) : root_(std::move(root)) 
     for (const auto& entry : fs::directory_iterator(root_, error)) {
       const std::string name = entry.path().filename().string();
       if (name == ".lock" || name == "run.jsonl") continue;
+      if (entry.is_directory(error) && fs::is_empty(entry.path(), error)) continue;  // of a start that was refused
       throw common::bad_input(
           fmt::format("{}: not empty (holds {}); give --resume to go on with that run, or name a new directory",
                       root_.string(), name));
@@ -70,11 +71,26 @@ fs::path RunDirectory::numbered(const char* kind, std::int64_t index) const {
   return root_ / kind / fmt::format("{:06}.h5", index);
 }
 
-void RunDirectory::write_case(const common::Scene& scene) const {
+void RunDirectory::write_case(const common::Scene& scene, Existing existing) const {
   const fs::path path = root_ / "case.yaml";
-  if (fs::exists(path)) return;
+  if (existing == Existing::kept && fs::exists(path)) return;
   const std::string text = common::to_yaml(scene);
   common::write_atomically(path, std::as_bytes(std::span(text)), scene.output.durability);
+}
+
+void RunDirectory::check_configuration(const common::Frame& frame, const fs::path& path,
+                                       const std::string& config_hash) const {
+  if (frame.config_hash == config_hash) return;
+  throw common::bad_input(
+      fmt::format("{}: was made with another configuration; resume with the scene in {}, or name a new directory",
+                  path.string(), (root_ / "case.yaml").string()));
+}
+
+std::optional<common::Frame> RunDirectory::prepared_sample(const std::string& config_hash) const {
+  if (!fs::exists(sample())) return std::nullopt;
+  std::optional<common::Frame> frame = read_if_whole(sample());
+  if (frame) check_configuration(*frame, sample(), config_hash);
+  return frame;
 }
 
 std::optional<common::Frame> RunDirectory::newest(const char* kind, const std::string& config_hash,
@@ -83,11 +99,7 @@ std::optional<common::Frame> RunDirectory::newest(const char* kind, const std::s
   for (auto n = numbers.rbegin(); n != numbers.rend(); ++n) {
     std::optional<common::Frame> frame = read_if_whole(numbered(kind, *n));
     if (!frame) continue;
-    if (frame->config_hash != config_hash) {
-      throw common::bad_input(
-          fmt::format("{}: was made with another configuration; resume with the scene in {}, or name a new directory",
-                      numbered(kind, *n).string(), (root_ / "case.yaml").string()));
-    }
+    check_configuration(*frame, numbered(kind, *n), config_hash);
     index = *n;
     return frame;
   }

@@ -13,8 +13,8 @@ namespace dem {
 
 class RunDirectory {
  public:
-  /// Creates DIR with its folders, or checks that an existing one may be used: empty (but for .lock and run.jsonl)
-  /// unless `resume`. Throws bad_input, io_failure.
+  /// Creates DIR with its folders, or checks that an existing one may be used: empty (but for .lock, run.jsonl and
+  /// empty folders) unless `resume`. Throws bad_input, io_failure.
   RunDirectory(std::filesystem::path root, bool resume);
 
   std::filesystem::path frame(std::int64_t index) const { return numbered("frames", index); }
@@ -23,19 +23,24 @@ class RunDirectory {
   /// The prepared sample, as `preparation.from` of other scenes takes it.
   std::filesystem::path sample() const { return root_ / "prepared" / "sample.h5"; }
 
-  /// Writes case.yaml if it is not there.
-  void write_case(const common::Scene& scene) const;
+  /// Writes case.yaml; one that is there is kept or replaced.
+  enum class Existing { kept, replaced };
+  void write_case(const common::Scene& scene, Existing existing) const;
 
   /// Newest frame that reads without an error; newer broken ones are passed over. Throws bad_input if it was made with
   /// another configuration than `config_hash`.
   std::optional<common::Frame> newest_frame(const std::string& config_hash) const;
   /// The same for preparation checkpoints; `index` is set to its number.
   std::optional<common::Frame> newest_preparation(const std::string& config_hash, std::int64_t& index) const;
+  /// The prepared sample, if it is there and reads without an error. Throws as above.
+  std::optional<common::Frame> prepared_sample(const std::string& config_hash) const;
   /// Removes all preparation checkpoints but the newest two before `index`.
   void drop_preparations_before(std::int64_t index) const;
 
  private:
   std::filesystem::path numbered(const char* kind, std::int64_t index) const;
+  void check_configuration(const common::Frame& frame, const std::filesystem::path& path,
+                           const std::string& config_hash) const;
   std::optional<common::Frame> newest(const char* kind, const std::string& config_hash, std::int64_t& index) const;
 
   std::filesystem::path root_;

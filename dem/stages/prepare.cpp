@@ -23,6 +23,12 @@ constexpr double kFirstTry = 0.006;        // above the target: a sample gets de
 constexpr double kLowestFriction = 0.002;
 constexpr double kLongestPhase = 20;  // [s] of simulated time
 
+/// Larger relative error of the two normal stresses.
+double stress_error(const State& state, double pressure) {
+  const auto stress = mean_stress(state, ring_area(state));
+  return std::max(std::abs(stress[0] / pressure - 1), std::abs(stress[1] / pressure - 1));
+}
+
 }  // namespace
 
 double void_ratio(const State& state, common::VoidRatioDefinition definition) {
@@ -36,6 +42,27 @@ double void_ratio(const State& state, common::VoidRatioDefinition definition) {
       break;
   }
   return e.e4;
+}
+
+std::vector<std::string> shortcomings_of(const common::Scene& scene, const Engine& engine) {
+  const common::PreparationOptions& wanted = scene.preparation;
+  const State& state = engine.state();
+  std::vector<std::string> texts;
+  const double e = void_ratio(state, wanted.definition);
+  if (!(std::abs(e - wanted.void_ratio) <= wanted.void_ratio_tolerance)) {
+    texts.push_back(
+        fmt::format("the sample has a void ratio of {:.4f}, wanted is {:.4f} within {:.4f}; it is used as it is", e,
+                    wanted.void_ratio, wanted.void_ratio_tolerance));
+  }
+  const double unbalanced = engine.health().unbalanced_force;
+  const double error = stress_error(state, wanted.confining_pressure);
+  if (!(unbalanced <= 1.01 * wanted.unbalanced_force) || !(error <= 1.01 * kPressureHeld)) {
+    texts.push_back(
+        fmt::format("the sample is not at rest under its pressure: unbalanced force {:.2e}, wanted is {:.2e}; relative "
+                    "stress error {:.2e}, wanted is {:.2e}; it is used as it is",
+                    unbalanced, wanted.unbalanced_force, error, kPressureHeld));
+  }
+  return texts;
 }
 
 Preparation::Preparation(const common::Scene& scene, Engine& engine, Control& control)
@@ -94,7 +121,7 @@ void Preparation::steer() {
   const ServoGains gains = sample_gains(scene_, state, p);
   control_.servo_x.update(gains, p, stress[0], elapsed);
   control_.servo_y.update(gains, p, stress[1], elapsed);
-  const double error = std::max(std::abs(stress[0] / p - 1), std::abs(stress[1] / p - 1));
+  const double error = stress_error(state, p);
 
   if (control_.phase == Phase::confinement) {
     if ((error < kPressureReached && engine_.health().unbalanced_force < 0.01) || late) {
@@ -105,9 +132,8 @@ void Preparation::steer() {
   } else if (control_.phase == Phase::densification) {
     // The servo must follow: a sample that lost its pressure would lose its friction for nothing.
     if (error > kPressureFollowed && !late) return;
-    if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below) {
-      enter(Phase::hold);
-    } else if (state.friction < kLowestFriction || late) {
+    if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below || state.friction < kLowestFriction ||
+        late) {
       enter(Phase::hold);
     } else {
       engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
@@ -124,16 +150,6 @@ void Preparation::steer() {
       engine_.edit().friction = control_.low_friction;
       enter(Phase::densification);
     } else if ((error < kPressureHeld && rest) || late) {
-      if (late) {
-        warning_ = fmt::format("rest not reached in {} s: unbalanced force {:.2e}, stress error {:.2e}", kLongestPhase,
-                               engine_.health().unbalanced_force, error);
-      } else if (std::abs(excess) > scene_.preparation.void_ratio_tolerance) {
-        warning_ = fmt::format(
-            "void ratio {:.4f} not met: the sample has {:.4f} ({})", scene_.preparation.void_ratio,
-            void_ratio(state, scene_.preparation.definition),
-            excess > 0 ? "as dense as friction lowered to nothing makes it"
-                       : "denser at rest than when friction was restored, or already at the highest friction");
-      }
       enter(Phase::shear);
     }
   }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/config/scene.hpp"
 #include "dem/stages/control.hpp"
@@ -22,9 +23,6 @@ class Preparation {
   /// One time step; phases follow one another. Afterwards control.phase is shear when the sample is ready.
   void step();
 
-  /// What the user should know of how it ended (void ratio not met, rest not reached); empty if all is well.
-  const std::string& warning() const { return warning_; }
-
  private:
   void enter(Phase phase);
   void steer();
@@ -33,8 +31,11 @@ class Preparation {
   const common::Scene& scene_;
   Engine& engine_;
   Control& control_;
-  std::string warning_;
 };
+
+/// What the user should know of a sample before it is sheared: void ratio off the wanted one by more than the
+/// tolerance, not at rest, not under this scene's pressure. Empty if all is well.
+std::vector<std::string> shortcomings_of(const common::Scene& scene, const Engine& engine);
 
 /// The scene's void ratio of a state, in the declared definition.
 double void_ratio(const State& state, common::VoidRatioDefinition definition);

@@ -1,0 +1,114 @@
+// Resumption of `dem run` in a directory. Oracle: the run that was not interrupted, and INTERFACES, Resume.
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "common/error.hpp"
+#include "common/io/frame.hpp"
+#include "dem/run.hpp"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+namespace {
+
+common::Scene small_scene() {
+  common::Scene scene;
+  scene.effects.friction = true;
+  scene.effects.local_damping = true;
+  scene.assembly.particles = 30;
+  scene.preparation.void_ratio = 0.9;  // met at once
+  scene.preparation.unbalanced_force = 0.02;
+  scene.shear.axial_strain = 0.002;
+  scene.shear.frame_interval = 0.001;
+  return scene;
+}
+
+struct Outcome {
+  dem::RunEnd end;
+  int events = 0;  ///< progress reports of the preparation
+  std::string warnings;
+};
+
+Outcome go_on(const common::Scene& scene, const fs::path& directory, std::optional<std::int64_t> until_frame = {}) {
+  Outcome outcome{};
+  dem::RunPorts ports;
+  ports.progress = [&](const std::string& event) {
+    if (event.find("void_ratio") != std::string::npos) ++outcome.events;
+    if (event.find("warning") != std::string::npos) outcome.warnings += event;
+  };
+  outcome.end = dem::run(scene, {directory, true, until_frame, {}}, ports);
+  return outcome;
+}
+
+std::string hash_of(const fs::path& file) {
+  return common::read_frame(file).payload_hash;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of the scene that runs") {
+  const fs::path root = fs::temp_directory_path() / "rockbreak_test_run";
+  fs::remove_all(root);
+  const fs::path whole = root / "whole";
+  const common::Scene scene = small_scene();
+  const Outcome first = go_on(scene, whole);
+  CHECK(first.end == dem::RunEnd::finished);
+  CHECK(first.events > 0);
+  CHECK_THAT(first.warnings, Contains("void ratio") && Contains("0.9"));
+  const std::string last = hash_of(whole / "frames/000002.h5");
+  const std::string resolved = text_of(whole / "case.yaml");
+
+  SECTION("a finished run ends at once") {
+    const auto written = fs::last_write_time(whole / "frames/000002.h5");
+    CHECK(go_on(scene, whole).end == dem::RunEnd::finished);
+    CHECK(fs::last_write_time(whole / "frames/000002.h5") == written);
+  }
+  SECTION("killed between the sample and frame 0: the sample is reused, and its shortcomings are told again") {
+    fs::remove_all(whole / "frames");
+    fs::remove(whole / "case.yaml");
+    const Outcome again = go_on(scene, whole);
+    CHECK(again.events == 0);
+    CHECK(again.warnings == first.warnings);
+    CHECK(hash_of(whole / "frames/000002.h5") == last);
+    CHECK(text_of(whole / "case.yaml") == resolved);
+  }
+  SECTION("a frame that is reached already is not passed") {
+    fs::remove(whole / "frames/000002.h5");
+    CHECK(go_on(scene, whole, 1).end == dem::RunEnd::paused);
+    CHECK_FALSE(fs::exists(whole / "frames/000002.h5"));
+  }
+  SECTION("a case.yaml with nothing that was made with it gives way") {
+    fs::remove_all(whole / "frames");
+    fs::remove_all(whole / "prepared");
+    common::Scene other = scene;
+    other.seed = 2;
+    other.shear.axial_strain = 0.001;
+    go_on(other, whole);
+    CHECK_THAT(text_of(whole / "case.yaml"), Contains("seed: 2"));
+  }
+  SECTION("another configuration is refused, whether frames or only the sample stand there") {
+    common::Scene other = scene;
+    other.contact.friction = 0.4;
+    CHECK_THROWS_WITH(go_on(other, whole), Contains("another configuration"));
+    fs::remove_all(whole / "frames");
+    CHECK_THROWS_WITH(go_on(other, whole), Contains("sample.h5") && Contains("another configuration"));
+  }
+  SECTION("a test starts from a sample, not from the middle of a preparation") {
+    common::Scene follower = scene;
+    follower.preparation.from = (whole / "prepared/sample.h5").string();
+    go_on(follower, root / "follower");
+    CHECK(hash_of(root / "follower/frames/000002.h5") == last);
+    const fs::path early = root / "early/prepared/000000.h5";
+    dem::RunPorts ports;
+    ports.interrupted = [&] { return fs::exists(early); };
+    CHECK(dem::run(scene, {root / "early", false, {}, {}}, ports) == dem::RunEnd::interrupted);
+    follower.preparation.from = early.string();
+    CHECK_THROWS_WITH(go_on(follower, root / "refused"), Contains("middle of a preparation"));
+  }
+  fs::remove_all(root);
+}
