@@ -22,12 +22,13 @@ void complete(Particles& p, double density) {
   fill(p.velocity, Vec2(Vec2::Zero()));
   fill(p.displacement, Vec2(Vec2::Zero()));
   fill(p.angular_velocity, 0.0);
-  for (auto* values : {&p.area, &p.mass, &p.inertia}) values->resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    p.area[i] = common::area(p.outline(i));
-    p.mass[i] = density * p.area[i];
-    p.inertia[i] = density * common::polar_moment(p.outline(i));
-  }
+  const auto measure = [&p, n](std::vector<double>& values, const auto& measured) {
+    if (!values.empty()) return;
+    for (std::size_t i = 0; i < n; ++i) values.push_back(measured(p.outline(i)));
+  };
+  measure(p.area, [](common::PolygonView outline) { return common::area(outline); });
+  measure(p.mass, [&](common::PolygonView outline) { return density * common::area(outline); });
+  measure(p.inertia, [&](common::PolygonView outline) { return density * common::polar_moment(outline); });
 }
 
 }  // namespace

@@ -69,6 +69,13 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
+// The message for people, for a driver the answer of the protocol, and the exit code.
+int fail(const Arguments& arguments, common::ExitCode code, const char* text) {
+  std::fprintf(stderr, "dem: error: %s\n", text);
+  if (arguments.serve) dem::say(STDOUT_FILENO, fmt::format("error {} {}", static_cast<int>(code), text));
+  return static_cast<int>(code);
+}
+
 void print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
@@ -119,14 +126,10 @@ int main(int argc, char** argv) {
     if (*explain_command) print(dem::explain(scene));
     return 0;
   } catch (const common::Error& error) {
-    std::fprintf(stderr, "dem: error: %s\n", error.what());
-    if (a.serve) dem::say(STDOUT_FILENO, fmt::format("error {} {}", static_cast<int>(error.code()), error.what()));
-    return static_cast<int>(error.code());
+    return fail(a, error.code(), error.what());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "dem: error: out of memory\n");
-    return static_cast<int>(common::ExitCode::numerical_failure);
+    return fail(a, common::ExitCode::numerical_failure, "out of memory");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "dem: error: %s\n", error.what());
-    return static_cast<int>(common::ExitCode::io_failure);
+    return fail(a, common::ExitCode::io_failure, error.what());
   }
 }
