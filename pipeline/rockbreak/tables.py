@@ -8,7 +8,7 @@ SERVO_TOLERANCE = 0.02      # rms of the lateral stress error
 AREA_TOLERANCE = 1e-12      # relative change of the total solid area
 REST_TOLERANCE = 1e-3       # unbalanced force before shear
 INERTIA_TOLERANCE = 1e-3    # inertial number
-ENERGY_TOLERANCE = 0.02     # residual over boundary work
+ENERGY_TOLERANCE = 0.001    # residual over boundary work
 
 
 def number(value, form="{:.3f}"):
