@@ -26,8 +26,14 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-inline Error bad_input(const std::string& message) { return {ExitCode::bad_input, message}; }
-inline Error numerical_failure(const std::string& message) { return {ExitCode::numerical_failure, message}; }
-inline Error io_failure(const std::string& message) { return {ExitCode::io_failure, message}; }
+inline Error bad_input(const std::string& message) {
+  return {ExitCode::bad_input, message};
+}
+inline Error numerical_failure(const std::string& message) {
+  return {ExitCode::numerical_failure, message};
+}
+inline Error io_failure(const std::string& message) {
+  return {ExitCode::io_failure, message};
+}
 
 }  // namespace common

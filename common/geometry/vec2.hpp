@@ -9,9 +9,13 @@ namespace common {
 
 using Vec2 = Eigen::Vector2d;
 
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 /// `a` turned by +90 degrees.
-inline Vec2 perpendicular(const Vec2& a) { return {-a.y(), a.x()}; }
+inline Vec2 perpendicular(const Vec2& a) {
+  return {-a.y(), a.x()};
+}
 
 /// A rotation by a fixed angle.
 struct Rotation {

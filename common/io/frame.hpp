@@ -41,12 +41,12 @@ struct Particles {
 
 /// C contacts, ascending by (a, b) with a < b, one per pair.
 struct Contacts {
-  std::vector<std::int64_t> a, b;           ///< C; particle ids
-  std::vector<Vec2> point, normal, force;   ///< C; application point [m], unit normal a to b, force on b [N]
-  std::vector<double> normal_force;         ///< C; >= 0 [N]
-  std::vector<double> shear_force;          ///< C; force . (-n_y, n_x) [N]
-  std::vector<double> overlap_area;         ///< C [m^2]
-  std::vector<double> overlap_width;        ///< C [m]
+  std::vector<std::int64_t> a, b;          ///< C; particle ids
+  std::vector<Vec2> point, normal, force;  ///< C; application point [m], unit normal a to b, force on b [N]
+  std::vector<double> normal_force;        ///< C; >= 0 [N]
+  std::vector<double> shear_force;         ///< C; force . (-n_y, n_x) [N]
+  std::vector<double> overlap_area;        ///< C [m^2]
+  std::vector<double> overlap_width;       ///< C [m]
   std::optional<std::vector<double>> shear_displacement;  ///< C [m]; only in scenes with friction
 
   std::size_t size() const { return a.size(); }
@@ -75,9 +75,9 @@ struct Frame {
 
   Particles particles;
   Contacts contacts;
-  std::vector<std::int64_t> ring;   ///< boundary/ring: ids in order around the assembly
-  std::vector<Column> history;      ///< history/*: one row per record since the previous frame, equal lengths
-  std::vector<Column> checkpoint;   ///< checkpoint/*: the rest of dem's state (servo, ring counter, energy sums, ...)
+  std::vector<std::int64_t> ring;  ///< boundary/ring: ids in order around the assembly
+  std::vector<Column> history;     ///< history/*: one row per record since the previous frame, equal lengths
+  std::vector<Column> checkpoint;  ///< checkpoint/*: the rest of dem's state (servo, ring counter, energy sums, ...)
 };
 
 /// What a reader needs: `contact_state` accepts files with only particles/{id,position,angle,boundary,vertex_offset,
