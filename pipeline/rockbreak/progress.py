@@ -71,7 +71,8 @@ class JsonProgress:
 class TerminalProgress:
     """A live line with strain, contacts, particles, broken and the time left; messages scroll above it."""
 
-    BAR = 24
+    BAR = 10
+    PREPARATION = ("step", "void_ratio", "friction", "contacts")  # what fits into 80 columns
 
     def __init__(self):
         self._console = Console(stderr=True)
@@ -92,17 +93,17 @@ class TerminalProgress:
         left = self._time_left(strain, target)
         done = 0 if not target else min(1.0, strain / target)
         filled = int(done * self.BAR)
-        parts = [("shear  ", "bold"), ("━" * filled, "cyan"), ("━" * (self.BAR - filled), "bright_black"),
-                 f"  strain {strain:7.2%}", f"  contacts {state['contacts']}", f"  particles {state['particles']}"]
+        parts = [("strain ", "bold"), ("━" * filled, "cyan"), ("━" * (self.BAR - filled), "bright_black"),
+                 f" {strain:.1%}  {state['contacts']} contacts  {state['particles']} particles"]
         if state["broken"] is not None:
-            parts.append(f"  broken {state['broken']}")
-        parts.append((f"  {time_text(time.monotonic() - self._start)}, {time_text(left)} left", "bright_black"))
+            parts.append(f"  {state['broken']} broken")
+        parts.append((f"  {time_text(left)} left", "bright_black"))
         self._live.update(Text.assemble(*parts, no_wrap=True, overflow="ellipsis"))
 
     def child_event(self, name, event):
         if event["event"] == "progress" and event.get("stage") != "shear":
             fields = [f"{key.replace('_', ' ')} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
-                      for key, value in event.items() if key not in ("event", "stage", "time")]
+                      for key, value in event.items() if key in self.PREPARATION]
             elapsed = time_text(time.monotonic() - self._start)
             self._live.update(Text.assemble((f"{event.get('stage', name)}  ", "bold"), "  ".join(fields),
                                             (f"  {elapsed}", "bright_black"), no_wrap=True, overflow="ellipsis"))
