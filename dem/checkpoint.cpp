@@ -95,8 +95,10 @@ common::Frame to_frame(const State& state, const common::Scene& scene, common::S
   for (const std::int32_t i : state.ring) frame.ring.push_back(state.particles.id[i]);
 
   frame.checkpoint.push_back({"time_step", "s", "dt", {state.time_step}});
-  for (const EnergyEntry& e : kEnergies) {
-    frame.checkpoint.push_back({e.name, "J", e.description, {state.energy.*e.member}});
+  if (scene.effects.energy_ledger) {
+    for (const EnergyEntry& e : kEnergies) {
+      frame.checkpoint.push_back({e.name, "J", e.description, {state.energy.*e.member}});
+    }
   }
   return frame;
 }
@@ -111,7 +113,13 @@ State to_state(const common::Frame& frame) {
   state.time_step = checkpoint_value(frame, "time_step");
   state.friction = frame.friction;
   state.next_id = frame.next_id;
-  for (const EnergyEntry& e : kEnergies) state.energy.*e.member = checkpoint_value(frame, e.name);
+  // A scene without the ledger leaves none of them.
+  const bool ledger = std::any_of(frame.checkpoint.begin(), frame.checkpoint.end(), [](const common::Column& c) {
+    return c.name.starts_with("energy_") && c.name != "energy_at_start";
+  });
+  if (ledger) {
+    for (const EnergyEntry& e : kEnergies) state.energy.*e.member = checkpoint_value(frame, e.name);
+  }
   return state;
 }
 
