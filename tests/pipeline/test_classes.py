@@ -1,0 +1,87 @@
+"""Classes of forces, stresses and displacements against states whose answer is known by hand."""
+import h5py
+import numpy as np
+import pytest
+
+import synthetic
+from rockbreak.classes import (force_classes, large_displacements, particle_stresses, read_contact_state,
+                               stress_classes)
+
+
+def test_forces_at_a_threshold_are_moderate_and_unloaded_contacts_do_not_count():
+    assert force_classes(np.array([0.0, 1.0, 0.999e6, 1e6, 5e6, 5.001e6, 9e6])) == (2, 2, 2)
+    assert force_classes(np.zeros(0)) == (0, 0, 0)
+
+
+def test_tension_is_a_low_stress():
+    assert stress_classes(np.array([-20e6, 3e6, 5e6, 8e6, 30e6]), low=4e6, high=10e6) == (2, 2, 1)
+
+
+def test_a_displacement_counts_by_its_length():
+    assert large_displacements(np.array([[1.1, 0.0], [0.9, 0.9], [0.0, -1.19], [0.0, 0.0]])) == 2
+
+
+def pressed_square(stress, side=0.5, turn=0.3, centre=(3.0, -2.0)):
+    """A turned square between four neighbours that put the tractions of a uniform stress on its sides' middles."""
+    c, s = np.cos(turn), np.sin(turn)
+    rotation = np.array([[c, -s], [s, c]])
+    outward = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]]) @ rotation.T
+    point = np.asarray(centre) + 0.5 * side * outward
+    force = -side * outward @ stress.T  # traction of a compression-positive stress
+    position = np.vstack([[centre], np.asarray(centre) + side * outward])
+    return position, point, force
+
+
+@pytest.mark.parametrize("square_is_a", [True, False])
+def test_a_square_under_the_tractions_of_a_uniform_stress_has_that_stress(square_is_a):
+    stress = np.array([[2e6, -0.7e6], [-0.7e6, 5e6]])
+    position, point, force = pressed_square(stress)
+    square, others = np.zeros(4, dtype=int), np.arange(1, 5)
+    a, b = (square, others) if square_is_a else (others, square)
+    found = particle_stresses(position, np.full(5, 0.25), a, b, point, -force if square_is_a else force)
+    assert found[0] == pytest.approx([2e6, 5e6, -0.7e6])
+
+
+def test_two_particles_pressed_on_each_other_have_equal_and_opposite_forces_but_equal_signs_of_stress():
+    position = np.array([[0.0, 0.0], [0.0, 1.0]])
+    found = particle_stresses(position, np.array([0.5, 0.25]), np.array([0]), np.array([1]), np.array([[0.0, 0.6]]),
+                              np.array([[0.0, 1e6]]))
+    assert found == pytest.approx(np.array([[0, 1.2e6, 0], [0, 1.6e6, 0]]))
+
+
+def test_the_volume_average_of_particle_stresses_is_the_stress_of_the_assembly():
+    """Eq. 13 with branch vectors between centroids, over any closed set of contacts."""
+    rng = np.random.default_rng(3)
+    position, area = rng.uniform(0, 5, (30, 2)), rng.uniform(0.1, 0.2, 30)
+    pairs = np.array([(i, j) for i in range(30) for j in range(i + 1, 30)])[rng.permutation(435)[:80]]
+    point, force = rng.uniform(0, 5, (80, 2)), rng.normal(0, 1e6, (80, 2))
+    a, b = pairs.T
+    found = particle_stresses(position, area, a, b, point, force)
+    total = np.einsum("ci,cj->ij", force, position[b] - position[a])
+    expected = [total[0, 0], total[1, 1], 0.5 * (total[0, 1] + total[1, 0])]
+    assert area @ found == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_frame_is_counted_as_its_arrays_are(tmp_path):
+    run = synthetic.write_run(tmp_path / "r", frames=5, breaks=lambda k: 2)
+    path = run / "frames" / "000004.h5"
+    with h5py.File(path, "a") as file:
+        forces = np.concatenate([np.full(10, 0.5e6), np.full(20, 2e6), np.full(5, 7e6)])
+        forces = np.concatenate([forces, np.zeros(len(file["contacts/a"]) - 35)])
+        file["contacts/normal_force"][:] = forces
+        file["particles/displacement"][:] = 0.0
+        file["particles/displacement"][3] = [2.0, 0.0]
+        ids, force = file["particles/id"][:].tolist(), file["contacts/force"][:]
+        position, area = file["particles/position"][:], file["particles/area"][:]
+        by_hand = np.zeros((len(ids), 2))
+        for c, (a, b) in enumerate(zip(file["contacts/a"][:], file["contacts/b"][:])):
+            for particle, sign in ((ids.index(a), 1), (ids.index(b), -1)):
+                arm = file["contacts/point"][c] - position[particle]
+                by_hand[particle] += sign * force[c] * arm / area[particle]
+    state = read_contact_state(path)
+    assert state.stress[:, :2] == pytest.approx(by_hand, rel=1e-9, abs=1e-3)
+    counts = state.counts(low_stress=1e6, high_stress=3e6)
+    assert [counts[name] for name in ("weak_forces", "moderate_forces", "strong_forces", "contacts")] == [10, 20, 5, 35]
+    assert counts["large_displacements"] == 1 and counts["particles"] == len(ids) == 48 + 8
+    assert counts["low_vertical_stresses"] == np.sum(by_hand[:, 1] < 1e6)
+    assert counts["high_horizontal_stresses"] == np.sum(by_hand[:, 0] > 3e6)
