@@ -40,16 +40,14 @@ Line edge_line(const Point* vertex, int n, int i) {
 }
 
 /// Writes the polygon relative to `origin`; returns the mean of its vertices.
-Point shift(PolygonView polygon, const Vec2& origin, Point* vertex) {
+Point shift(const OutlineView& polygon, const Vec2& origin, Point* vertex) {
   Point sum{0, 0};
-  int n = 0;
-  for (const Vec2& p : polygon) {
-    vertex[n] = {p.x() - origin.x(), p.y() - origin.y()};
-    sum.x += vertex[n].x;
-    sum.y += vertex[n].y;
-    ++n;
+  for (int i = 0; i < polygon.size; ++i) {
+    vertex[i] = {polygon.x[i] - origin.x(), polygon.y[i] - origin.y()};
+    sum.x += vertex[i].x;
+    sum.y += vertex[i].y;
   }
-  const double scale = 1.0 / n;
+  const double scale = 1.0 / polygon.size;
   return {sum.x * scale, sum.y * scale};
 }
 
@@ -164,8 +162,15 @@ void measure(const Outline& outline, const Vec2& origin, Overlap& result) {
   result.centroid = {origin.x() + mean.x / outline.size, origin.y() + mean.y / outline.size};
 }
 
+Vec2 centroid_of(const OutlineView& polygon) {
+  Vec2 vertex[kMaxOverlapVertices];
+  for (int i = 0; i < polygon.size; ++i) vertex[i] = polygon[i];
+  return centroid({vertex, static_cast<std::size_t>(polygon.size)});
+}
+
 /// Crossings, normal and width from the vertices at which the boundary passes from one polygon to the other.
-void find_chord(const Outline& outline, const Vec2& origin, PolygonView a, PolygonView b, Overlap& result) {
+void find_chord(const Outline& outline, const Vec2& origin, const OutlineView& a, const OutlineView& b,
+                Overlap& result) {
   Point chord{0, 0};  // sum over the pieces of a's boundary of end minus start
   Point sum{0, 0};
   bool previous = outline.from_b[outline.size - 1];
@@ -188,7 +193,7 @@ void find_chord(const Outline& outline, const Vec2& origin, PolygonView a, Polyg
   if (has_chord) {
     result.normal = {chord.y / length, -chord.x / length};
   } else {
-    const Vec2 axis = centroid(b) - centroid(a);
+    const Vec2 axis = centroid_of(b) - centroid_of(a);
     const double distance = axis.norm();
     result.normal = distance > kNoChord * root ? Vec2(axis / distance) : Vec2(1, 0);
   }
@@ -202,12 +207,10 @@ void find_chord(const Outline& outline, const Vec2& origin, PolygonView a, Polyg
 
 }  // namespace
 
-Overlap overlap(PolygonView a, PolygonView b) {
-  assert(a.size() >= 3 && b.size() >= 3 && a.size() + b.size() <= std::size_t{kMaxOverlapVertices});
+Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature) {
+  assert(a.size >= 3 && b.size >= 3 && a.size + b.size <= kMaxOverlapVertices);
   Overlap result;
   const Vec2 origin = a[0];
-  const int size_a = static_cast<int>(a.size());
-  const int size_b = static_cast<int>(b.size());
   Outline buffers[2];
   Outline* from = &buffers[0];
   Outline* to = &buffers[1];
@@ -215,21 +218,33 @@ Overlap overlap(PolygonView a, PolygonView b) {
   const Point middle_a = shift(a, origin, from->vertex);
   const Point middle_b = shift(b, origin, window);
 
-  const int facing_b = facing_edge(window, size_b, middle_a);
-  if (separates(edge_line(window, size_b, facing_b), from->vertex, size_a)) return result;
-  const int facing_a = facing_edge(from->vertex, size_a, middle_b);
-  if (separates(edge_line(from->vertex, size_a, facing_a), window, size_b)) return result;
+  if (feature.owner == 1 && feature.edge < a.size &&
+      separates(edge_line(from->vertex, a.size, feature.edge), window, b.size)) {
+    return result;
+  }
+  const int facing_b = facing_edge(window, b.size, middle_a);
+  if (separates(edge_line(window, b.size, facing_b), from->vertex, a.size)) return result;
+  const int facing_a = facing_edge(from->vertex, a.size, middle_b);
+  feature = {1, static_cast<std::uint8_t>(facing_a)};
+  if (separates(edge_line(from->vertex, a.size, facing_a), window, b.size)) return result;
 
-  from->size = size_a;
-  std::fill_n(from->from_b, size_a, false);
-  for (int k = 0, i = facing_b; k < size_b; ++k, i = i + 1 < size_b ? i + 1 : 0) {
-    const Cut cut = clip(*from, edge_line(window, size_b, i), *to);
+  from->size = a.size;
+  std::fill_n(from->from_b, a.size, false);
+  for (int k = 0, i = facing_b; k < b.size; ++k, i = i + 1 < b.size ? i + 1 : 0) {
+    const Cut cut = clip(*from, edge_line(window, b.size, i), *to);
     if (cut == Cut::all) return result;
     if (cut == Cut::partial) std::swap(from, to);
   }
   measure(*from, origin, result);
   if (result.area > 0) find_chord(*from, origin, a, b, result);
   return result;
+}
+
+Overlap overlap(PolygonView a, PolygonView b) {
+  alignas(32) double coordinates[4][kMaxOverlapVertices];
+  PairFeature unknown;
+  return overlap(pack_outline(a.begin(), a.end(), coordinates[0], coordinates[1]),
+                 pack_outline(b.begin(), b.end(), coordinates[2], coordinates[3]), unknown);
 }
 
 }  // namespace common

@@ -1,6 +1,9 @@
 // Overlap of two convex polygons: what a contact law needs to know of a contact.
 #pragma once
 
+#include <cstdint>
+
+#include "common/geometry/outline_view.hpp"
 #include "common/geometry/polygon.hpp"
 
 namespace common {
@@ -23,10 +26,21 @@ struct Overlap {
   int crossings = 0;                   ///< boundary crossings: 2, 4, ...; 0 for inclusion
 };
 
+/// What the last query learned of a pair: its best separating edge, that is the edge that the other polygon passes
+/// furthest outside of, or cuts least. Zero: nothing known. Any value is allowed, also of another pair: it decides how
+/// fast the answer comes; the answer differs by rounding at most.
+struct PairFeature {
+  std::uint8_t owner = 0;  ///< 1: the edge is a's, 2: it is b's, 0: not known
+  std::uint8_t edge = 0;   ///< from vertex `edge` to the next one
+};
+
 /// Overlap of two convex counter-clockwise polygons, at most kMaxOverlapVertices vertices together.
 /// Never allocates, never fails: touching or separated polygons give area 0.
 /// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, if the coordinates are relative to one of the
 /// two particles.
+Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature);
+
+/// The same of a single pair, nothing being known of it.
 Overlap overlap(PolygonView a, PolygonView b);
 
 inline constexpr int kMaxOverlapVertices = 128;
