@@ -2,7 +2,7 @@
 from typing import NamedTuple, Optional
 
 from . import paper
-from .classes import read_contact_state
+from .classes import HELD, read_contact_state
 from .results import nearest
 
 
@@ -28,6 +28,8 @@ LABELS = {
     "sin_phi_misfit": "sin φ of Eq. 10 / Eq. 12 − 1", "a": "a", "a_n": "a_n", "a_t": "a_t",
     "anisotropy": "a + a_n + a_t",
 }
+LABELS |= {name + HELD: LABELS[name] + ", two contacts held"
+           for name in paper.VERTICAL_STRESSES + paper.HORIZONTAL_STRESSES}
 
 
 def paper_rows(results):
@@ -42,14 +44,25 @@ def paper_rows(results):
         results, pressure) + _strength(results, pressure)
 
 
-def _counts(results, strain):
-    """Counts of the nearest frame; None beyond the last one."""
+def state_at(results, strain):
+    """ContactState of the nearest frame; None beyond the last one."""
     frames = results.frames
     end = frames[-1]["axial_strain"]
     spacing = end / (len(frames) - 1) if len(frames) > 1 else 0.0
-    if strain > end + spacing:
+    if strain is None or strain > end + spacing:
         return None
-    return read_contact_state(results.directory.frame_file(frames[nearest(frames, strain)]["frame"])).counts()
+    return read_contact_state(results.directory.frame_file(frames[nearest(frames, strain)]["frame"]))
+
+
+def _counts(results, strain):
+    state = state_at(results, strain)
+    return None if state is None else state.counts()
+
+
+def published_counts(counts, column):
+    """Quantity -> the paper's count in a column of Table 2 or 3; stress classes for both readings of the stress."""
+    values = {quantity: row[column] for quantity, row in counts.items()}
+    return values | {quantity + HELD: value for quantity, value in values.items() if quantity.endswith("_stresses")}
 
 
 def _table_2(results):
@@ -59,7 +72,7 @@ def _table_2(results):
         ours = _counts(results, strain)
         if ours is None:
             continue
-        values = {quantity: counts[strain] for quantity, counts in published.items()} | {"contacts": contacts}
+        values = published_counts(published, strain) | {"contacts": contacts}
         if results.breakable:
             values["particles"] = paper.PARTICLES_2MPA_BREAKABLE[strain]
         rows += [PaperRow("Table 2", quantity, f"{100 * strain:g} %", value, ours[quantity])
@@ -68,10 +81,9 @@ def _table_2(results):
 
 
 def _table_3(results, pressure):
-    peak_strain = results.summary["peak_strain"]
-    at_peak = _counts(results, peak_strain) if peak_strain is not None else {}
+    at_peak = _counts(results, results.summary["peak_strain"]) or {}
     at_end = _counts(results, results.frames[-1]["axial_strain"]) if results.frames[-1]["final"] else {}
-    values = {quantity: counts[pressure] for quantity, counts in paper.COUNTS_AT_PEAK[results.breakable].items()}
+    values = published_counts(paper.COUNTS_AT_PEAK[results.breakable], pressure)
     values["contacts"] = paper.CONTACTS_AT_PEAK[results.breakable][pressure]
     if results.breakable:
         values["particles"] = paper.PARTICLES_AT_PEAK_BREAKABLE[pressure]

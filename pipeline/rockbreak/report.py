@@ -81,14 +81,19 @@ def write_report(runs, target):
         "summary": summary_table(runs),
         "warnings": warnings(runs),
         "cases": [(run.name, run.directory.case_file.read_text(encoding="utf-8")) for run in runs],
-        "style": (TEMPLATES / "style.css").read_text(encoding="utf-8"),
     }
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    text = environment.get_template("report.html.j2").render(page)
     temporary = target.with_suffix(".tmp")
-    temporary.write_text(text, encoding="utf-8")
+    temporary.write_text(render("report.html.j2", page), encoding="utf-8")
     os.replace(temporary, target)
+
+
+def render(template, page):
+    """Text of a template; .html ones are escaped and get the style sheet."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=lambda name: name.endswith(".html.j2"), trim_blocks=True,
+        lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    style = (TEMPLATES / "style.css").read_text(encoding="utf-8")
+    return environment.get_template(template).render(page, style=style)
 
 
 def strongest(pictures):

@@ -162,8 +162,9 @@ def write_split(path, k, frame_hash, ids, made, refusals=()):
 
 
 def write_run(directory, frames=21, strain=0.10, breakable=True, size=(8, 6), breaks=lambda k: 1 if k % 2 else 0,
-              anisotropy=(0.3, 0.5, 0.2)):
-    """A finished run: `frames` frames to `strain`; split k breaks `breaks(k)` particles."""
+              anisotropy=(0.3, 0.5, 0.2), contacts=None):
+    """A finished run: `frames` frames to `strain`; split k breaks `breaks(k)` particles; `contacts` in every frame,
+    two for each particle if not told."""
     directory.mkdir(parents=True, exist_ok=True)
     case = json.loads(json.dumps(CASE))
     case["shear"]["axial_strain"] = strain
@@ -177,10 +178,10 @@ def write_run(directory, frames=21, strain=0.10, breakable=True, size=(8, 6), br
         end = strain * k / (frames - 1)
         span = strain / (frames - 1)
         strains = np.zeros(1) if k == 0 else end - span + span * (np.arange(rows) + 1) / rows
-        contacts = contacts_of_known_anisotropy(2 * len(assembly.id), *(value * min(1.0, end / 0.04) for value in
-                                                                        anisotropy))
+        state = contacts_of_known_anisotropy(contacts or 2 * len(assembly.id),
+                                             *(value * min(1.0, end / 0.04) for value in anisotropy))
         history = history_rows(max(0, (k - 1) * rows + 1), strains, 2e6, len(assembly.id), 2 * len(assembly.id))
-        frame_hash = write_frame(directory / "frames" / f"{k:06d}.h5", assembly, k, end, k == frames - 1, contacts,
+        frame_hash = write_frame(directory / "frames" / f"{k:06d}.h5", assembly, k, end, k == frames - 1, state,
                                  history, step=k * rows)
         events.append({"event": "frame", "frame": k, "time": float(k), "seconds": {"dem": 1.0}})
         if breakable:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import synthetic
-from rockbreak.classes import (force_classes, large_displacements, particle_stresses, read_contact_state,
-                               stress_classes)
+from rockbreak.classes import (STRESS_LIMITS, first_two_contacts, force_classes, held_stresses, large_displacements,
+                               particle_stresses, read_contact_state, stress_classes)
 
 
 def test_forces_at_a_threshold_are_moderate_and_unloaded_contacts_do_not_count():
@@ -62,6 +62,34 @@ def test_the_volume_average_of_particle_stresses_is_the_stress_of_the_assembly()
     assert area @ found == pytest.approx(expected, rel=1e-9)
 
 
+def test_supports_are_the_first_two_contacts_of_a_particle_as_a_or_as_b():
+    found = first_two_contacts(4, np.array([0, 0, 1, 0]), np.array([1, 2, 2, 3]))
+    assert found.tolist() == [[0, 1], [0, 2], [1, 2], [3, -1]]
+
+
+def test_a_column_held_at_both_ends_carries_no_stress_and_one_held_across_gains_what_poisson_would_have_spread():
+    """Uniaxial stress in plane strain: sideways it expands by nu/(1-nu) of what it shortens."""
+    stress = np.array([[0.0, 4e6, 0.0]] * 3)
+    point = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
+    found = held_stresses(stress, np.array([[0, 1], [0, 2], [0, -1]]), point, poisson_ratio=0.2)
+    assert found == pytest.approx(np.array([[0, 0, 0], [1e6, 4e6, 0], [0, 4e6, 0]]))
+
+
+def test_held_supports_neither_come_closer_nor_move_apart():
+    rng = np.random.default_rng(5)
+    stress, point = rng.normal(0, 1e6, (50, 3)), rng.uniform(-1, 1, (100, 2))
+    supports = np.arange(100).reshape(50, 2)
+    found = held_stresses(stress, supports, point, poisson_ratio=0.3)
+    for (xx, yy, xy), (i, j), before in zip(found, supports, stress):
+        d = point[i] - point[j]
+        sigma = np.array([[xx, xy], [xy, yy]])
+        strain = sigma - 0.3 * np.trace(sigma) * np.eye(2)
+        assert d @ strain @ d == pytest.approx(0, abs=1e-6 * 1e6)
+        across = np.array([-d[1], d[0]])
+        assert across @ sigma @ across == pytest.approx(
+            across @ np.array([[before[0], before[2]], [before[2], before[1]]]) @ across)
+
+
 def test_a_frame_is_counted_as_its_arrays_are(tmp_path):
     run = synthetic.write_run(tmp_path / "r", frames=5, breaks=lambda k: 2)
     path = run / "frames" / "000004.h5"
@@ -79,9 +107,9 @@ def test_a_frame_is_counted_as_its_arrays_are(tmp_path):
                 arm = file["contacts/point"][c] - position[particle]
                 by_hand[particle] += sign * force[c] * arm / area[particle]
     state = read_contact_state(path)
-    assert state.stress[:, :2] == pytest.approx(by_hand, rel=1e-9, abs=1e-3)
-    counts = state.counts(low_stress=1e6, high_stress=3e6)
+    assert state.stress["virial"][:, :2] == pytest.approx(by_hand, rel=1e-9, abs=1e-3)
+    counts, (low, high) = state.counts(), STRESS_LIMITS["virial"]
     assert [counts[name] for name in ("weak_forces", "moderate_forces", "strong_forces", "contacts")] == [10, 20, 5, 35]
     assert counts["large_displacements"] == 1 and counts["particles"] == len(ids) == 48 + 8
-    assert counts["low_vertical_stresses"] == np.sum(by_hand[:, 1] < 1e6)
-    assert counts["high_horizontal_stresses"] == np.sum(by_hand[:, 0] > 3e6)
+    assert counts["low_vertical_stresses"] == np.sum(by_hand[:, 1] < low)
+    assert counts["high_horizontal_stresses"] == np.sum(by_hand[:, 0] > high)
