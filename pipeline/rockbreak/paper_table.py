@@ -22,6 +22,7 @@ from .run_directory import RunDirectory
 
 # What may differ between the runs of one group: the seed, and what follows from where a run was made.
 FREE_KEYS = ("seed", "output.", "preparation.from")
+LATERAL_STRESS_ERROR = 0.05  # rms; a run beyond it is no test at its pressure
 
 
 @dataclass
@@ -71,18 +72,21 @@ def write(directories, out):
     """Writes the table of the run directories that are the paper's assembly at one of its pressures into `out`.
 
     Returns the path of the page; None, and writes nothing, if there is no such run. Runs without frames are an error
-    (RockbreakError), unfinished ones only lack what they have not reached.
+    (RockbreakError), unfinished ones only lack what they have not reached; runs whose lateral stress was not held are
+    named and left out.
     """
     runs = [Results(RunDirectory(path)) for path in directories]
     left_out = [run.name for run in runs if paper.pressure_of(run.case) is None]
     runs = [run for run in runs if paper.pressure_of(run.case) is not None]
     if not runs:
         return None
+    adrift = [(run.name, run.summary["lateral_stress_error_rms"]) for run in runs if is_adrift(run)]
+    runs = [run for run in runs if not is_adrift(run)]
     groups = grouped(runs)
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     page = {
-        "groups": groups, "left_out": left_out, "limits": limits_table(runs), "trends": trends(means_of(groups)),
+        "groups": groups, "left_out": left_out, "adrift": adrift, "limits": limits_table(runs), "trends": trends(means_of(groups)),
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "repeated": [group.title for group in groups if len(set(group.seeds)) < len(group.seeds)],
         "tolerances": TOLERANCES_IN_WORDS, "tally": tally(groups),
@@ -95,6 +99,10 @@ def write(directories, out):
     replace(out / "paper_table.md", render("paper_table.md.j2", page))
     replace(target, render("paper_table.html.j2", page))
     return target
+
+
+def is_adrift(run):
+    return (run.summary["lateral_stress_error_rms"] or 0.0) > LATERAL_STRESS_ERROR
 
 
 def replace(path, text):

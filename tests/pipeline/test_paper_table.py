@@ -1,6 +1,7 @@
 """Many runs beside the paper: scatter over seeds, verdicts, trends, limits of the classes, and the files written."""
 import csv
 
+import h5py
 import numpy as np
 import pytest
 import yaml
@@ -126,6 +127,18 @@ def test_runs_that_differ_by_more_than_their_seed_are_not_averaged(written, tmp_
     (run / "case.yaml").write_text(yaml.safe_dump(case))
     text = write([folder / "s1", folder / "s2", run], tmp_path / "out").read_text()
     assert "2 MPa, non-breakable; contact.law = potential" in text
+
+
+def test_a_run_that_did_not_hold_its_lateral_stress_is_named_and_left_out(written, tmp_path):
+    folder, _, _ = written
+    run = synthetic.write_run(tmp_path / "loose", frames=5, strain=0.173, breakable=False)
+    (run / "case.yaml").write_text((folder / "s1" / "case.yaml").read_text())
+    for file in (run / "frames").glob("*.h5"):
+        with h5py.File(file, "a") as frame:
+            frame["history/stress_xx"][:] = 2.2e6
+    text = write([folder / "s1", run], tmp_path / "out").read_text()
+    assert "loose is left out: its lateral stress was off by 10 %" in text
+    assert {one["n"] for one in csv.DictReader((tmp_path / "out" / "paper_table.csv").open())} == {"1"}
 
 
 def test_without_a_run_of_the_papers_assembly_nothing_is_written(written, tmp_path):
