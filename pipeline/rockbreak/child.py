@@ -1,6 +1,7 @@
-"""`dem` and `xfem` as child processes: lines on stdin and stdout, events and messages on stderr."""
+"""Child processes, `dem` and `xfem` before all: lines on stdin and stdout, events and messages on stderr."""
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -22,15 +23,20 @@ def executable(name):
     return str(path)
 
 
+def user_seconds_of_ended_children():
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
 class Child:
     """One running executable. It stays in this process group and inherits the lock of the run directory, and the
     kernel ends it should this process be killed: nothing writes to a directory that nobody holds."""
 
-    def __init__(self, name, arguments, lock, listener, cwd=None):
+    def __init__(self, name, arguments, lock, listener, cwd=None, program=None):
+        """`program`: its path; without one, `name` is that of an executable of ours."""
         self.name = name
         self._listener = listener
         self._said = []  # messages for people, as heard on stderr
-        command = [executable(name), *arguments]
+        command = [program or executable(name), *arguments]
         if shutil.which("setpriv"):
             command = ["setpriv", "--pdeathsig", "KILL", *command]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=cwd,

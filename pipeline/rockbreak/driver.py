@@ -12,7 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .child import Child
+from .child import Child, user_seconds_of_ended_children
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
@@ -278,10 +278,20 @@ def _refusals_in(path):
         return [(int(particle), str(reason)) for particle, reason in zip(np.array(file["refusals/particle"]), reasons)]
 
 
+def catch_signals():
+    """SIGINT and SIGTERM raise Interrupted, once."""
+    for one in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(one, _raise_interrupted)
+
+
 def _raise_interrupted(signum, _):
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     raise Interrupted(signum)
+
+
+def cpu_seconds():
+    return {"cpu_seconds": round(user_seconds_of_ended_children(), 3)}
 
 
 def drive(options, progress):
@@ -294,8 +304,7 @@ def drive(options, progress):
         if not options.resume and not directory.is_empty():
             raise RockbreakError(BAD_INPUT, f"{options.out}: is not empty; go on with --resume, or choose another "
                                  "--out")
-        signal.signal(signal.SIGINT, _raise_interrupted)
-        signal.signal(signal.SIGTERM, _raise_interrupted)
+        catch_signals()
         with Ledger(directory.ledger_file) as ledger, progress:
             scene = {"scene_hash": xxh3_128(options.case.read_bytes()), "overrides": options.overrides}
             starts = [event for event in read_ledger(directory.ledger_file) if event["event"] == "start"]
@@ -308,7 +317,7 @@ def drive(options, progress):
             try:
                 run.execute()
             except (RockbreakError, Interrupted) as end:
-                ledger.write("end", code=end.code, reason=str(end))
+                ledger.write("end", code=end.code, reason=str(end), **cpu_seconds())
                 raise
-            ledger.write("end", code=0)
+            ledger.write("end", code=0, **cpu_seconds())
     return directory

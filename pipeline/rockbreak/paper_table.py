@@ -4,7 +4,6 @@ write(directories, out) makes out/paper_table.md, .csv and .html.
 """
 import csv
 import io
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import mean, stdev
@@ -18,7 +17,7 @@ from .paper_trends import ASSEMBLY, trends
 from .paper_verdicts import NOT_REPRODUCED, REPRODUCED, TOLERANCES_IN_WORDS, UNDECIDABLE, verdict
 from .report import render
 from .results import Results
-from .run_directory import RunDirectory
+from .run_directory import RunDirectory, write_text
 
 # What may differ between the runs of one group: the seed, and what follows from where a run was made.
 FREE_KEYS = ("seed", "output.", "preparation.from")
@@ -95,20 +94,14 @@ def write(directories, out):
         "megapascal": lambda pair: " / ".join(f"{1e-6 * limit:.1f}" for limit in pair),
     }
     target = out / "paper_table.html"
-    replace(out / "paper_table.csv", csv_text(groups))
-    replace(out / "paper_table.md", render("paper_table.md.j2", page))
-    replace(target, render("paper_table.html.j2", page))
+    write_text(out / "paper_table.csv", csv_text(groups))
+    write_text(out / "paper_table.md", render("paper_table.md.j2", page))
+    write_text(target, render("paper_table.html.j2", page))
     return target
 
 
 def is_adrift(run):
     return (run.summary["lateral_stress_error_rms"] or 0.0) > LATERAL_STRESS_ERROR
-
-
-def replace(path, text):
-    temporary = path.with_suffix(path.suffix + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
 
 
 def grouped(runs):

@@ -6,6 +6,7 @@ import jinja2
 import numpy as np
 
 from . import assemblies, curves
+from .run_directory import write_text
 from .style import data_uri, png_bytes, svg_text
 from .tables import checks, headline, summary_table, warnings
 
@@ -82,9 +83,7 @@ def write_report(runs, target):
         "warnings": warnings(runs),
         "cases": [(run.name, run.directory.case_file.read_text(encoding="utf-8")) for run in runs],
     }
-    temporary = target.with_suffix(".tmp")
-    temporary.write_text(render("report.html.j2", page), encoding="utf-8")
-    os.replace(temporary, target)
+    write_text(target, render("report.html.j2", page))
 
 
 def render(template, page):

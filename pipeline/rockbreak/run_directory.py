@@ -83,21 +83,32 @@ class RunDirectory:
                 leftover.unlink()
 
     def lock(self):
-        """Takes the directory; the returned file holds the lock until it and all its heirs are closed."""
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            file = open(self.path / ".lock", "w", encoding="utf-8")
-        except OSError as error:
-            raise RockbreakError(IO_FAILURE, f"{self.path}: cannot be used as a run directory: {error.strerror}"
-                                 ) from error
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            file.close()
-            raise RockbreakError(BAD_INPUT, f"{self.path}: another pipeline/run is at work in this directory; "
-                                 "wait for it, or choose another --out") from None
-        os.set_inheritable(file.fileno(), True)
-        return file
+        return lock_directory(self.path, "pipeline/run")
+
+
+def lock_directory(path, program):
+    """Takes a directory for `program`; the returned file holds the lock until it and all its heirs are closed."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        file = open(path / ".lock", "w", encoding="utf-8")
+    except OSError as error:
+        raise RockbreakError(IO_FAILURE, f"{path}: cannot be used as a directory of {program}: {error.strerror}"
+                             ) from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        file.close()
+        raise RockbreakError(BAD_INPUT, f"{path}: another {program} is at work in this directory; "
+                             "wait for it, or choose another --out") from None
+    os.set_inheritable(file.fileno(), True)
+    return file
+
+
+def write_text(path, text):
+    """A file that is either the old one or the new one, whole."""
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
 
 
 def attributes(path):

@@ -1,12 +1,12 @@
 """summary.json: the numbers of one run (keys in the order of the list in pipeline/README.md). SI units."""
 import json
-import os
 
 import numpy as np
 
 from .history import running_mean, shear_rows, sin_phi
 from .ledger import seconds_per_phase
 from .results import nearest
+from .run_directory import write_text
 
 SMOOTHING_WINDOW = 0.002  # axial strain; peak_sin_phi is the largest value of the running mean over it
 RESIDUAL_WINDOW = 0.02    # axial strain; residual_sin_phi is the mean over the last of it
@@ -68,6 +68,7 @@ def summarize(results):
         },
         "max_inertial_number": largest(shear, "inertial_number"),
         "wall_seconds": wall_seconds(results.ledger()),
+        "cpu_seconds": cpu_seconds(results.ledger()),
         "steps": last["step"],
         "contact_steps": integer(at(history, "contact_steps", -1)),
     }
@@ -77,10 +78,14 @@ def wall_seconds(ledger):
     return {phase: round(value, 3) for phase, value in seconds_per_phase(ledger).items()}
 
 
+def cpu_seconds(ledger):
+    """User seconds of dem and xfem, interrupted starts included; None if the ledger does not tell."""
+    spent = [event["cpu_seconds"] for event in ledger if event["event"] == "end" and "cpu_seconds" in event]
+    return round(sum(spent), 3) if spent else None
+
+
 def write_summary(directory, summary):
-    temporary = directory.summary_file.with_suffix(".tmp")
-    temporary.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-    os.replace(temporary, directory.summary_file)
+    write_text(directory.summary_file, json.dumps(summary, indent=2) + "\n")
 
 
 def particles_at_strain(frames):

@@ -1,7 +1,7 @@
 """`dem` and `xfem` that speak the protocols of INTERFACES over synthetic files, for tests of the driver.
 
 A call is logged, one line each, in $FAKE_LOG. The scene (YAML) steers them: shear.frames, effects, and `fake` with
-`dem_dies_at` (frame) and `xfem_error_at` (frame), `slow` (seconds per frame), `break_per_split`.
+`dem_dies_at` (frame) and `xfem_error_at` (frame), `slow` (seconds per frame), `break_per_split`, `peak` (of sin phi).
 """
 import json
 import os
@@ -17,6 +17,7 @@ import yaml
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "pipeline")]
 import synthetic  # noqa: E402
+from fake_explain import resolved  # noqa: E402
 from rockbreak.run_directory import RunDirectory, attributes, broken_in, is_valid  # noqa: E402
 
 
@@ -25,7 +26,8 @@ def install(folder):
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("dem", "xfem"):
         path = folder / name
-        path.write_text(f"#!/bin/sh\nexec /usr/bin/python3 {HERE / 'fake_children.py'} {name} \"$@\"\n")
+        path.write_text(f"#!/bin/sh\n[ \"$1\" != explain ] || exec /usr/bin/python3 {HERE / 'fake_explain.py'} \"$@\"\n"
+                        f"exec /usr/bin/python3 {HERE / 'fake_children.py'} {name} \"$@\"\n")
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
 
 
@@ -42,13 +44,14 @@ class FakeDem:
     def __init__(self, arguments):
         self.serve = "--serve" in arguments
         self.until = int(option(arguments, "--until-frame", -1))
-        self.case = yaml.safe_load(Path(arguments[1]).read_text())
+        self.case = resolved(arguments)
         self.fake = self.case.get("fake", {})
         self.run = RunDirectory(option(arguments, "--out"))
         self.breakable = "breakage" in self.case["effects"]
+        self.run.path.mkdir(parents=True, exist_ok=True)
         self.run.case_file.write_text(yaml.safe_dump(self.case))
         self.last = self.case["shear"]["frames"] - 1
-        log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in ("--out",)),
+        log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in ("--out", "--set")),
             *([self.until] if self.until >= 0 else []))
 
     def write(self, k):
@@ -65,6 +68,11 @@ class FakeDem:
         strain = self.case["shear"]["axial_strain"] * k / self.last
         contacts = synthetic.contacts_of_known_anisotropy(80, 0.3, 0.5, 0.2)
         history = synthetic.history_rows(k, np.array([strain]), 2e6, len(assembly.id), 80)
+        if "peak" in self.fake:
+            history["stress_yy"] = history["stress_xx"] * (1 + self.fake["peak"]) / (1 - self.fake["peak"])
+        if k == 0 and not self.case["preparation"].get("from"):
+            (self.run.path / "prepared").mkdir(exist_ok=True)
+            (self.run.path / "prepared" / "sample.h5").write_text("a sample")
         path = self.run.frame_file(k)
         value = synthetic.write_frame(path, assembly, k, strain, k == self.last, contacts, history, step=k)
         print(json.dumps({"event": "progress", "stage": "shear", "step": k}), file=sys.stderr)
