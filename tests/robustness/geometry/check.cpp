@@ -1,0 +1,284 @@
+#include "tests/robustness/geometry/check.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "tests/robustness/geometry/clip_double_double.hpp"
+#include "tests/robustness/geometry/clip_exact.hpp"
+#include "tests/robustness/geometry/draw.hpp"
+
+namespace differential {
+namespace {
+
+using common::Overlap;
+using common::PairFeature;
+using common::Vec2;
+
+/// The double-double area decides where its error bound is below this share of the tolerance.
+constexpr double kBoundShare = 1e-3;
+
+double seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// What the overlap is, by the oracles.
+struct Reference {
+  OutlinePair convex;
+  DoubleDoubleClip clip;
+  double diameter = 0;
+  bool exact = false;  ///< the area is the rational one
+  double area = 0;
+  double tolerance = 0;
+  std::optional<Vec2> chord;  ///< if well defined
+  double chord_tolerance = 0;
+};
+
+struct Box {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+
+  explicit Box(const Outline& outline) {
+    for (int i = 0; i < outline.size; ++i) {
+      low = low.cwiseMin(Vec2(outline.x[i], outline.y[i]));
+      high = high.cwiseMax(Vec2(outline.x[i], outline.y[i]));
+    }
+  }
+  bool contains(const Vec2& p, double margin) const {
+    return (p.array() >= low.array() - margin).all() && (p.array() <= high.array() + margin).all();
+  }
+};
+
+/// Sum of 1 / sin(angle) over the pairs of edges that meet or nearly do: by so much moves the chord when a vertex does.
+double grazing(const OutlinePair& pair, double diameter) {
+  const double near = 1e-12 * diameter;
+  double sum = 0;
+  for (int j = 0; j < pair.b.size; ++j) {
+    const Vec2 v(pair.b.x[j], pair.b.y[j]);
+    const Vec2 window = Vec2(pair.b.x[pair.b.next(j)], pair.b.y[pair.b.next(j)]) - v;
+    const double window_margin = near * window.norm();
+    const auto above_b = [&](int i) { return common::cross(window, Vec2(pair.a.x[i], pair.a.y[i]) - v); };
+    double start = above_b(0);
+    for (int i = 0; i < pair.a.size; ++i) {
+      const double end = above_b(pair.a.next(i));
+      const double height_start = std::exchange(start, end);
+      if (std::min(height_start, end) > window_margin || std::max(height_start, end) < -window_margin) continue;
+      const Vec2 p(pair.a.x[i], pair.a.y[i]);
+      const Vec2 edge = Vec2(pair.a.x[pair.a.next(i)], pair.a.y[pair.a.next(i)]) - p;
+      const double margin = near * edge.norm();
+      const double from = common::cross(edge, v - p);
+      const double to = from + common::cross(edge, window);
+      if (std::min(from, to) > margin || std::max(from, to) < -margin) continue;
+      sum += edge.norm() * window.norm() / std::abs(common::cross(edge, window));
+    }
+  }
+  return sum;
+}
+
+/// The rational area, and whether the first oracle is as near to it as it says.
+double verified_area(const OutlinePair& convex, const DoubleDoubleClip& clip, Tally& tally) {
+  const double exact = exact_area(convex);
+  ++tally.exact_checks;
+  if (!(std::abs(clip.area - exact) <= clip.area_error)) ++tally.oracle_failures;
+  return exact;
+}
+
+Reference refer(const Sample& sample, Tally& tally) {
+  Reference reference;
+  OutlinePair& pair = reference.convex = sample.pair;
+  tally.not_convex += make_convex(pair.a) > 0;
+  tally.not_convex += make_convex(pair.b) > 0;
+  reference.diameter = std::max(diameter(pair.a), diameter(pair.b));
+  const DoubleDoubleClip& clip = reference.clip = clip_double_double(pair);
+  const bool decided = clip.area_error <= kBoundShare * area_tolerance(std::max(clip.area, 0.0), reference.diameter);
+  tally.undecided += !decided;
+  reference.exact = !decided || sample.exact;
+  reference.area = reference.exact ? verified_area(pair, clip, tally) : clip.area;
+  reference.tolerance = area_tolerance(reference.area, reference.diameter);
+  const double size = reference.diameter;
+  if (reference.area > 1e-10 * size * size) {
+    reference.chord_tolerance = clip.chord_error + 1e-15 * size * (4 + grazing(pair, size));
+    if (reference.chord_tolerance < 1e-6 * std::sqrt(reference.area)) reference.chord = clip.chord;
+  }
+  return reference;
+}
+
+/// The first thing that is wrong with an overlap; empty if nothing is.
+std::string complaint(const Overlap& found, const Sample& sample, const Reference& reference, Tally& tally) {
+  if (!std::isfinite(found.area) || !std::isfinite(found.width) || !found.normal.allFinite() ||
+      !found.centroid.allFinite() || !found.chord_midpoint.allFinite()) {
+    return "not finite";
+  }
+  const double share = std::abs(found.area - reference.area) / reference.tolerance;
+  tally.worst_share = std::max(tally.worst_share, share);
+  if (share > 1 || found.area < 0) return "area";
+  if (found.area == 0) {
+    const bool untouched = found.width == 0 && found.normal.isZero(0) && found.centroid.isZero(0) &&
+                           found.chord_midpoint.isZero(0) && found.crossings == 0;
+    return untouched ? "" : "something is set without an overlap";
+  }
+  const double root = std::sqrt(found.area);
+  if (std::abs(found.normal.norm() - 1) > 1e-14) return "normal";
+  if (found.width < root * (1 - 1e-14)) return "width below sqrt(area)";
+  if (found.crossings < 0 || found.crossings % 2 != 0) return "crossings";
+  for (const Outline* outline : {&sample.pair.a, &sample.pair.b}) {
+    const Box box(*outline);
+    if (!box.contains(found.centroid, 1e-15 * reference.diameter)) return "centroid";
+    if (!box.contains(found.chord_midpoint, 1e-15 * reference.diameter)) return "chord midpoint";
+  }
+  if (!reference.chord) return {};
+  const Vec2 gradient(reference.chord->y(), -reference.chord->x());
+  const double length = gradient.norm();
+  const double width_error = std::abs(found.width - std::max(length, std::sqrt(reference.area))) -
+                             std::abs(found.area - reference.area) / root;
+  // The normal of a chord that is no more than rounding is another one, the centre line.
+  const double turn = length > 1e-6 * root ? (length * found.normal - gradient).norm() : 0;
+  const double chord_share = std::max(width_error, turn) / reference.chord_tolerance;
+  tally.worst_chord_share = std::max(tally.worst_chord_share, chord_share);
+  return chord_share > 1 ? "chord" : "";
+}
+
+/// What a query leaves when b is elsewhere.
+PairFeature feature_elsewhere(const OutlinePair& pair, Kernel kernel, Draw& draw, double diameter) {
+  OutlinePair moved = pair;
+  const Vec2 by = draw.uniform(0, 0.3) * diameter * draw.direction();
+  for (int i = 0; i < common::padded_size(moved.b.size); ++i) {
+    moved.b.x[i] += by.x();
+    moved.b.y[i] += by.y();
+  }
+  PairFeature feature;
+  kernel(moved.a.view(), moved.b.view(), feature);
+  return feature;
+}
+
+PairFeature made_up(Draw& draw, const OutlinePair& pair) {
+  PairFeature feature;
+  feature.owner = static_cast<std::uint8_t>(draw.one_in(8) ? draw.integer(0, 255) : draw.integer(1, 2));
+  feature.edge = static_cast<std::uint8_t>(draw.one_in(8) ? draw.integer(0, 255)
+                                                          : draw.integer(0, std::max(pair.a.size, pair.b.size) - 1));
+  return feature;
+}
+
+void check_one(Sample& sample, const Overlap& unknown, const Overlap& known, Kernel kernel, Tally& tally) {
+  const Reference reference = refer(sample, tally);
+  ++tally.pairs;
+  tally.overlapping += reference.area > 0;
+  tally.chord_checks += reference.chord.has_value();
+
+  std::string what;
+  const auto examine = [&](const char* name, const Overlap& found) {
+    const std::string text = complaint(found, sample, reference, tally);
+    if (!text.empty() && what.empty()) what = text + name;
+  };
+  examine("", unknown);
+  examine(", from the pair's feature", known);
+  const common::OutlineView a = sample.pair.a.view();
+  const common::OutlineView b = sample.pair.b.view();
+  Draw draw(
+      static_cast<std::uint64_t>(sample.key[0] + 31 * (sample.key[1] + 31 * (sample.key[2] + 31 * sample.key[3]))));
+  PairFeature other = made_up(draw, sample.pair);
+  examine(", from a feature made up", kernel(a, b, other));
+  other = feature_elsewhere(sample.pair, kernel, draw, reference.diameter);
+  examine(", from a feature of another place", kernel(a, b, other));
+  other = {};
+  Overlap exchanged = kernel(b, a, other);
+  exchanged.normal *= -1;
+  examine(", exchanged", exchanged);
+
+  if (what.empty()) return;
+  if (!reference.exact) verified_area(reference.convex, reference.clip, tally);
+  ++tally.disagreements;
+  ++tally.kinds[what];
+  tally.add(Failure{sample.key, what});
+}
+
+}  // namespace
+
+double area_tolerance(double exact, double diameter) {
+  return 1e-10 * exact + 1e-15 * diameter * diameter;
+}
+
+void Tally::add(const Failure& failure) {
+  failures.insert(std::upper_bound(failures.begin(), failures.end(), failure), failure);
+  if (failures.size() > kFailuresKept) failures.pop_back();
+}
+
+void Tally::add(const Tally& other) {
+  pairs += other.pairs;
+  overlapping += other.overlapping;
+  exact_checks += other.exact_checks;
+  undecided += other.undecided;
+  chord_checks += other.chord_checks;
+  not_convex += other.not_convex;
+  disagreements += other.disagreements;
+  oracle_failures += other.oracle_failures;
+  worst_share = std::max(worst_share, other.worst_share);
+  worst_chord_share = std::max(worst_chord_share, other.worst_chord_share);
+  seconds_unknown += other.seconds_unknown;
+  seconds_cached += other.seconds_cached;
+  for (const auto& [kind, count] : other.kinds) kinds[kind] += count;
+  for (const Failure& failure : other.failures) add(failure);
+}
+
+void check(std::span<Sample> samples, Kernel kernel, Tally& tally) {
+  std::vector<Overlap> unknown(samples.size());
+  std::vector<Overlap> known(samples.size());
+  const double start = seconds();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    PairFeature feature;
+    unknown[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), feature);
+  }
+  const double middle = seconds();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    known[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), samples[k].feature);
+  }
+  const double end = seconds();
+  tally.seconds_unknown += middle - start;
+  tally.seconds_cached += end - middle;
+  for (std::size_t k = 0; k < samples.size(); ++k) check_one(samples[k], unknown[k], known[k], kernel, tally);
+}
+
+std::string describe(const Sample& sample, Kernel kernel) {
+  std::string text;
+  const auto write = [&text](const char* name, const Outline& outline) {
+    for (int i = 0; i < outline.size; ++i) {
+      text += fmt::format("{} {:2} {:24a} {:24a}  {:.17g} {:.17g}\n", name, i, outline.x[i], outline.y[i], outline.x[i],
+                          outline.y[i]);
+    }
+  };
+  write("a", sample.pair.a);
+  write("b", sample.pair.b);
+  OutlinePair pair = sample.pair;
+  const int left_out = make_convex(pair.a) + make_convex(pair.b);
+  const double size = std::max(diameter(pair.a), diameter(pair.b));
+  const DoubleDoubleClip clip = clip_double_double(pair);
+  const double exact = exact_area(pair);
+  text += fmt::format("corners that do not turn left {}\n", left_out);
+  text += fmt::format("exact area        {:.17g}, tolerance {:.3g}\n", exact, area_tolerance(exact, size));
+  text +=
+      fmt::format("double-double     {:.17g} +- {:.2g}, chord ({:.17g}, {:.17g}) +- {:.2g}, grazing {:.3g}\n",
+                  clip.area, clip.area_error, clip.chord.x(), clip.chord.y(), clip.chord_error, grazing(pair, size));
+  const auto write_overlap = [&](const char* name, const Overlap& o) {
+    text += fmt::format(
+        "{} area {:.17g} (share {:.3g}), width {:.17g}, normal ({:.17g}, {:.17g}), centroid ({:.17g}, {:.17g}), "
+        "chord midpoint ({:.17g}, {:.17g}), crossings {}\n",
+        name, o.area, std::abs(o.area - exact) / area_tolerance(exact, size), o.width, o.normal.x(), o.normal.y(),
+        o.centroid.x(), o.centroid.y(), o.chord_midpoint.x(), o.chord_midpoint.y(), o.crossings);
+  };
+  PairFeature feature;
+  write_overlap("kernel, unknown  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature));
+  feature = sample.feature;
+  write_overlap("kernel, feature  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature));
+  feature = {};
+  write_overlap("kernel, exchanged", kernel(sample.pair.b.view(), sample.pair.a.view(), feature));
+  return text;
+}
+
+}  // namespace differential
