@@ -46,6 +46,11 @@ def test_a_void_ratio_is_judged_only_in_a_definition_in_which_our_sample_starts_
     assert verdict("void_ratio_e2", "end", 0.336, 0.336, None, STARTS)[0] == UNDECIDABLE
 
 
+def test_what_cannot_fail_is_not_called_reproduced():
+    assert verdict("large_displacements", "0 %", 0, 0, 0.0, STARTS)[0] == UNDECIDABLE
+    assert verdict("large_displacements", "7 %", 0, 0, 0.0, STARTS)[0] == REPRODUCED
+
+
 def test_the_paper_obeys_the_trends_that_it_states():
     """Its own numbers as the means: every trend that they can decide holds."""
     means = {}
