@@ -17,7 +17,7 @@ from .paper import FORCES, HORIZONTAL_STRESSES, LARGE_DISPLACEMENT, VERTICAL_STR
 
 WEAK_FORCE = 1e6    # [N] weak below
 STRONG_FORCE = 5e6  # [N] strong above
-STRESS_LIMITS = {"virial": (4e6, 12e6), "held": (2.2e6, 10e6)}  # [Pa] low below, high above
+STRESS_LIMITS = {"virial": (4e6, 12e6), "held": (2e6, 10e6)}  # [Pa] low below, high above
 HELD = "_held"      # what is appended to the name of a count in the second reading
 POISSON_RATIO = 0.2  # Table 1
 
