@@ -45,11 +45,13 @@ double ring_area(const State& state) {
 
 VoidRatios void_ratios(const State& state) {
   const Particles& particles = state.particles;
+  std::vector<std::uint8_t> in_ring(particles.size(), 0);
+  for (const std::int32_t i : state.ring) in_ring[i] = 1;
   std::vector<std::uint8_t> held(particles.size(), 0);
   for (const Contact& contact : state.contacts) held[contact.a] = held[contact.b] = 1;
   double interior = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (particles.boundary[i]) continue;
+    if (in_ring[i]) continue;
     if (held[i] || inside_ring(state, particles.position[i])) interior += particles.area[i];
   }
   double rim = 0;

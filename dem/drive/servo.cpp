@@ -13,12 +13,14 @@ void Servo::update(const ServoGains& gains, double target, double measured, doub
   if (rate == wanted) integral = grown;
 }
 
-ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density) {
+ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density,
+                       double drive_rate) {
   const double wave_time = radius / std::sqrt(options.modulus / density);
   ServoGains gains{};
-  gains.proportional = 0.3 / (options.modulus * wave_time);
-  gains.integral = gains.proportional / (1.5 * wave_time);
-  gains.max_rate = options.max_rate > 0 ? options.max_rate : 0.1 * pressure / (options.modulus * wave_time);
+  gains.proportional = 2.4 / (options.modulus * wave_time);
+  gains.integral = gains.proportional / (0.75 * wave_time);
+  const double enough = std::max(0.1 * pressure / (options.modulus * wave_time), 3 * drive_rate);
+  gains.max_rate = options.max_rate > 0 ? options.max_rate : enough;
   return gains;
 }
 

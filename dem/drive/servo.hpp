@@ -1,9 +1,14 @@
 // Stress control: a PI law that turns the stress error into a strain rate of the boundary.
 //
 //   rate = kp (p - sigma) + integral,  d integral/dt = ki (p - sigma),  |rate| <= max_rate
-// With K the modulus that the gains refer to and tau = R / c the time a stress wave takes from the ring to the centre:
-//   kp = 0.3 / (K tau),  ki = kp / (1.5 tau).
-// Proportional control alone leaves an offset, since the lateral strain rate of a shearing sample is not zero.
+// With K the modulus that the gains refer to and tau = R / c the time a stress wave takes from the ring to the centre,
+// c = sqrt(K / density):
+//   kp = 2.4 / (K tau),  ki = kp / (0.75 tau).
+// Proportional control alone leaves an offset, since the lateral strain rate of a shearing sample is not zero. The mean
+// stress follows the rate like an integrator, without dead time (a boundary that speeds up strains the layer next to it
+// at once), so that the gain may exceed 1 / (K tau); twice these gains were still stable in samples three to four times
+// stiffer than K = 1e8 Pa. A dense sample dilates: at its peak it expands sideways at up to twice the axial rate, which
+// the limit of the rate must allow, or the stress is lost.
 #pragma once
 
 #include "common/config/scene.hpp"
@@ -26,7 +31,10 @@ struct Servo {
   void update(const ServoGains& gains, double target, double measured, double dt);
 };
 
-/// Gains for a sample of radius `radius` [m] and bulk density `density` [kg/m^3] held at `pressure` [Pa].
-ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density);
+/// Gains for a sample of radius `radius` [m] and bulk density `density` [kg/m^3] held at `pressure` [Pa] while it is
+/// strained at `drive_rate` [1/s] in the other direction. Without a limit in the options the rate may reach the larger
+/// of 0.1 pressure / (K tau) and three times the drive's.
+ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density,
+                       double drive_rate);
 
 }  // namespace dem

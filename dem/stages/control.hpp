@@ -39,8 +39,11 @@ struct Control {
 std::vector<common::Column> to_columns(const Control& control);
 Control read_control(const common::Frame& frame);
 
-/// Finds the boundary ring anew and sets the flags. Energy that enters or leaves with particles that change sides
-/// (their kinetic energy, the contacts between boundary particles, which carry no force) is booked as boundary work.
+/// Finds the boundary ring anew and sets the flags: the ring's particles and those that leave it with a contact to the
+/// boundary of more than three mean forces. Boundary particles exert no force on each other and overlap as they are
+/// driven together; letting go of a deep overlap would be a blow to the sample. They stay driven, inside the ring,
+/// until the overlap is one that a packing has. Energy that enters or leaves with particles that change sides (their
+/// kinetic energy, the contacts between boundary particles, which carry no force) is booked as boundary work.
 void renew_ring(Engine& engine);
 
 /// Ring of the present centres without setting any flag (loose assemblies).

@@ -15,12 +15,14 @@ constexpr double kContactsEach = 0.75;     // contacts per particle: they touch,
 constexpr double kRelaxed = 0.05;          // unbalanced force at which relaxation ends
 constexpr double kPressureReached = 0.01;  // relative error of both stresses
 constexpr double kPressureFollowed = 0.03;
-constexpr double kPressureHeld = 0.003;
+constexpr double kPressureHeld = 0.001;
 constexpr int kRingInterval = 50;
 constexpr int kServoInterval = 10;
 constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves the friction
-constexpr double kFirstTry = 0.006;        // above the target: a sample gets denser while it comes to rest
+constexpr double kFirstTry = 0.003;        // above the target: a sample gets denser while it comes to rest
+constexpr double kRingFixed = 0.012;       // above the target: the ring stays as it is; one particle is 0.005 of 300
 constexpr double kLowestFriction = 0.002;
+constexpr double kSettled = 0.003;    // unbalanced force at which a frictionless sample gets no denser
 constexpr double kLongestPhase = 20;  // [s] of simulated time
 
 /// Larger relative error of the two normal stresses.
@@ -80,8 +82,12 @@ double Preparation::target_void_ratio_error() const {
 
 void Preparation::step() {
   if (control_.steps_to_ring-- <= 0) {
-    control_.phase == Phase::compaction ? outline_ring(engine_) : renew_ring(engine_);
-    control_.steps_to_ring = kRingInterval;
+    if (control_.phase == Phase::compaction) {
+      outline_ring(engine_);
+    } else if (control_.phase < Phase::densification || target_void_ratio_error() > kRingFixed) {
+      renew_ring(engine_);
+    }
+    control_.steps_to_ring = kRingInterval - 1;
   }
   if (control_.phase == Phase::compaction) {
     engine_.scale_positions(1 - scene_.preparation.compaction_rate * engine_.state().time_step);
@@ -132,10 +138,11 @@ void Preparation::steer() {
   } else if (control_.phase == Phase::densification) {
     // The servo must follow: a sample that lost its pressure would lose its friction for nothing.
     if (error > kPressureFollowed && !late) return;
-    if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below || state.friction < kLowestFriction ||
-        late) {
+    const bool frictionless = state.friction < kLowestFriction;
+    const bool settled = frictionless && engine_.health().unbalanced_force < kSettled;
+    if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below || settled || late) {
       enter(Phase::hold);
-    } else {
+    } else if (!frictionless) {
       engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
       control_.low_friction = state.friction;
     }

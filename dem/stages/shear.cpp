@@ -48,7 +48,7 @@ double Shear::axial_rate() const {
 void Shear::step() {
   if (control_.steps_to_ring-- <= 0) {
     renew_ring(engine_);
-    control_.steps_to_ring = kRingInterval;
+    control_.steps_to_ring = kRingInterval - 1;
   }
   if (control_.steps_to_servo-- <= 0) {
     const State& state = engine_.state();
