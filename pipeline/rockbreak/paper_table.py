@@ -85,7 +85,8 @@ def write(directories, out):
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     page = {
-        "groups": groups, "left_out": left_out, "adrift": adrift, "limits": limits_table(runs), "trends": trends(means_of(groups)),
+        "groups": groups, "left_out": left_out, "adrift": adrift, "limits": limits_table(runs),
+        "trends": trends(means_of(groups)),
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "repeated": [group.title for group in groups if len(set(group.seeds)) < len(group.seeds)],
         "tolerances": TOLERANCES_IN_WORDS, "tally": tally(groups),
