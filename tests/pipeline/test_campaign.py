@@ -1,6 +1,7 @@
 """Campaigns: how a table becomes runs (no process), what is run, kept, resumed and reported (children that only
 pretend), and that a shared sample changes no result (the real executables, a tiny scene)."""
 import csv
+import fcntl
 import json
 import os
 import signal
@@ -259,8 +260,16 @@ def test_progress_is_json_lines_and_a_dry_run_writes_nothing(work):
     assert (last["runs"], last["done"], last["failed"]) == (2, 2, 0)
 
 
+def test_the_papers_runs_are_set_beside_the_paper_if_the_campaign_asks(work):
+    runs = {"set": {"effects": TWINS["solid"]["effects"]}, "compare": "paper"}
+    assert work.run(**runs).returncode == 0 and not (work.out / "paper_table.html").exists(), "not the paper's assembly"
+    process = work.run("--set", "assembly.particles=1194", **runs)
+    assert process.returncode == 0, process.err
+    assert "2 MPa, non-breakable" in (work.out / "paper_table.md").read_text()
+    assert 'href="paper_table.html"' in (work.out / "campaign.html").read_text()
+
+
 def test_two_campaigns_do_not_share_a_directory(work):
-    import fcntl
     work.out.mkdir()
     with open(work.out / ".lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
