@@ -10,40 +10,57 @@
 #include "dem/effects/local_damping.hpp"
 
 namespace dem {
-namespace {
 
-// As a share of the scene's smallest diameter; the rebuild rate and the number of idle pairs balance near it.
-constexpr double kSkin = 0.06;
-
-}  // namespace
-
-Engine::Engine(const common::Scene& scene, State state)
+Engine::Engine(const common::Scene& scene, State state, int threads)
     : effects_(scene.effects),
       damping_(scene.damping.local),
       safety_(scene.time_step.safety),
+      team_(std::make_unique<Team>(threads)),
       constants_(contact_constants(scene)),
       kernel_(select_contact_kernel(scene.contact.law, scene.effects)),
-      neighbours_(kSkin * scene.assembly.diameter_min),
+      neighbours_(scene.neighbours.skin * scene.assembly.diameter_min),
       state_(std::move(state)) {
+  stored_ = true;
   restart();
 }
 
+const State& Engine::state() const {
+  if (!stored_) slots_.store(state_.contacts, constants_.tangential_stiffness);
+  stored_ = true;
+  return state_;
+}
+
+State& Engine::edit() {
+  state();
+  return state_;
+}
+
 void Engine::restart() {
-  const Particles& p = state_.particles;
-  work_.outlines.radius.resize(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.outline(i).size() > std::size_t{common::kMaxParticleVertices}) {
-      throw common::bad_input(fmt::format("particle {}: its outline has {} vertices, expected at most {}", p.id[i],
-                                          p.outline(i).size(), common::kMaxParticleVertices));
-    }
-    work_.outlines.radius[i] = common::radius_about(p.outline(i), Vec2::Zero());
-  }
+  state();
+  check_outlines();
   state_.time_step = stable_time_step();
-  neighbours_.rebuild(p, work_.outlines.radius, work_.pairs);
+  outlines_.reset(state_.particles);
+  inverse_.reset(state_.particles);
+  forces_.force.resize(state_.particles.size());
+  forces_.moment.resize(state_.particles.size());
+  team_->for_blocks(state_.particles.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    outlines_.place(state_.particles, first, last);
+  });
+  slots_ = {};
+  rebuild();
+  slots_.load_histories(state_.contacts);
   // No time passes here, so no work is done: what changes is booked by whoever changed it.
-  const EnergySums energy = state_.energy;
-  evaluate(0);
-  state_.energy = energy;
+  now_ = evaluate(0);
+  state();
+}
+
+void Engine::check_outlines() const {
+  const Particles& p = state_.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.outline(i).size() <= std::size_t{common::kMaxParticleVertices}) continue;
+    throw common::bad_input(fmt::format("particle {}: its outline has {} vertices, expected at most {}", p.id[i],
+                                        p.outline(i).size(), common::kMaxParticleVertices));
+  }
 }
 
 // The contact law's steepest slope is that of the widest face in the assembly.
@@ -63,19 +80,50 @@ double Engine::stable_time_step() const {
   return safety_ * std::sqrt(mass / stiffness);
 }
 
-void Engine::evaluate(double dt) {
-  transform_outlines(state_.particles, work_.outlines.vertices);
-  kernel_.evaluate(state_, work_, constants_, dt);
+void Engine::rebuild() {
+  neighbours_.rebuild(state_.particles, outlines_, pairs_);
+  slots_.renew(pairs_, effects_);
+  slots_of_.reset(state_.particles.size(), pairs_);
+}
+
+ContactSums Engine::evaluate(double dt) {
+  stored_ = false;
+  const ContactScene scene{state_.particles, outlines_, constants_, state_.friction, dt};
+  const ContactSums sums = team_->sum_blocks(slots_.size(), contact_sums_, [&](std::size_t first, std::size_t last) {
+    return kernel_.evaluate(scene, slots_, first, last);
+  });
+  team_->for_blocks(state_.particles.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    slots_of_.gather(slots_.load, first, last, forces_);
+  });
+  return sums;
 }
 
 void Engine::step(const StrainRate& rate) {
-  if (effects_.local_damping) apply_local_damping(state_, work_.forces, damping_, effects_.energy_ledger);
-  advance(state_, work_.forces, rate, effects_.energy_ledger);
-  if (neighbours_.outdated(state_.particles, work_.outlines.radius)) {
-    neighbours_.rebuild(state_.particles, work_.outlines.radius, work_.pairs);
+  Particles& p = state_.particles;
+  const double dt = state_.time_step;
+  const bool ledger = effects_.energy_ledger;
+  const MotionSums motion =
+      team_->sum_blocks(p.size(), motion_sums_, [&](std::size_t first, std::size_t last) -> MotionSums {
+        MotionSums sums;
+        if (effects_.local_damping) {
+          sums.damping = apply_local_damping(p, inverse_, forces_, damping_, dt, ledger, first, last);
+        }
+        sums.boundary_work = advance(p, forces_, inverse_, rate, dt, ledger, first, last);
+        sums.outdated = neighbours_.outdated(p, first, last);
+        outlines_.place(p, first, last);
+        return sums;
+      });
+  ++state_.step;
+  state_.time += dt;
+  if (motion.outdated) rebuild();
+  now_ = evaluate(dt);
+  contact_steps_ += now_.contacts;
+  if (ledger) {
+    state_.energy.boundary_work += motion.boundary_work;
+    state_.energy.damping += motion.damping;
+    state_.energy.friction += now_.friction;
+    state_.energy.contact_law_work += now_.contact_law_work;
   }
-  evaluate(state_.time_step);
-  contact_steps_ += static_cast<std::int64_t>(state_.contacts.size());
 }
 
 void Engine::scale_positions(double factor) {
@@ -89,14 +137,16 @@ Health Engine::health() const {
   std::size_t free = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.boundary[i]) continue;
-    unbalance += work_.forces.force[i].norm();
+    unbalance += forces_.force[i].norm();
     ++free;
   }
-  for (const Contact& c : state_.contacts) normal += c.normal_force;
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    if (slots_.overlap_area[k] > 0) normal += slots_.normal_force[k];
+  }
   if (free > 0 && normal > 0) {
-    const double contacts = static_cast<double>(state_.contacts.size());
+    const double contacts = static_cast<double>(now_.contacts);
     h.unbalanced_force = (unbalance / static_cast<double>(free)) / (normal / contacts);
-    h.sliding_fraction = static_cast<double>(work_.sliding) / contacts;
+    h.sliding_fraction = static_cast<double>(now_.sliding) / contacts;
   }
   return h;
 }

@@ -1,11 +1,15 @@
 // The one loop: forces at t -> body effects -> motion -> forces at t + dt.
 #pragma once
 
+#include <memory>
+
 #include "common/config/scene.hpp"
 #include "dem/contact/forces.hpp"
 #include "dem/motion.hpp"
 #include "dem/neighbours.hpp"
+#include "dem/outlines.hpp"
 #include "dem/state.hpp"
+#include "dem/team.hpp"
 
 namespace dem {
 
@@ -16,14 +20,17 @@ struct Health {
 };
 
 /// Advances a state. Everything here but the state is either a constant of the scene or recomputable from the state:
-/// after `restart` the next steps are the same, bit for bit, whatever came before.
+/// after `restart` the next steps are the same, bit for bit, whatever came before and for any number of threads.
 class Engine {
  public:
-  Engine(const common::Scene& scene, State state);
+  Engine(const common::Scene& scene, State state, int threads = 1);
 
-  const State& state() const { return state_; }
+  /// The state at this instant.
+  const State& state() const;
+  /// The same, its `contacts` being those of the last call of state() or edit(): for what is looked at every step.
+  const State& clock() const { return state_; }
   /// The state for changes from outside (splits, ring, coefficients); `restart` makes them count.
-  State& edit() { return state_; }
+  State& edit();
 
   /// Forgets every cache, chooses the time step and evaluates the contacts without slip. Called at each frame, also
   /// in an uninterrupted run, so that a resumed one goes on identically. Throws bad_input naming a particle with more
@@ -40,21 +47,48 @@ class Engine {
   const ContactConstants& constants() const { return constants_; }
   const std::string& kernel_name() const { return kernel_.name; }
   /// Resultant contact forces at the present positions, before damping.
-  const BodyForces& forces() const { return work_.forces; }
+  const BodyForces& forces() const { return forces_; }
+  /// Contacts in force.
+  std::int64_t contacts() const { return now_.contacts; }
   std::int64_t contact_steps() const { return contact_steps_; }
 
  private:
-  void evaluate(double dt);
+  // What the motion of one block of particles sums up.
+  struct MotionSums {
+    double boundary_work = 0, damping = 0;
+    bool outdated = false;
+
+    MotionSums& operator+=(const MotionSums& o) {
+      boundary_work += o.boundary_work;
+      damping += o.damping;
+      outdated |= o.outdated;
+      return *this;
+    }
+  };
+
+  void check_outlines() const;
   double stable_time_step() const;
+  void rebuild();
+  ContactSums evaluate(double dt);
 
   common::Effects effects_;
   double damping_;
   double safety_;
+  std::unique_ptr<Team> team_;  // where it is stays, while an engine may move
   ContactConstants constants_;
   ContactKernel kernel_;
   Neighbours neighbours_;
-  State state_;
-  ContactWork work_;
+  mutable State state_;          // its contacts are filled from the slots when somebody asks
+  mutable bool stored_ = false;  // the contacts of state_ are those of the slots
+  WorldOutlines outlines_;
+  InverseInertia inverse_;
+  std::vector<Pair> pairs_;
+  ContactSlots slots_;
+  SlotsOfParticles slots_of_;
+  BodyForces forces_;
+  ContactSums now_;
+  std::vector<ContactSums> contact_sums_;
+  std::vector<MotionSums> motion_sums_;
   std::int64_t contact_steps_ = 0;
 };
 

@@ -24,8 +24,9 @@ std::string explain(const common::Scene& scene) {
   line(
       "state arrays of a particle: position, velocity, displacement, angle, angular velocity, mass, inertia, area, "
       "outline");
-  line(fmt::format("state arrays of a contact: pair, point, normal, normal force, overlap area and width{}{}",
-                   e.friction ? ", shear force, shear displacement" : "", e.energy_ledger ? ", elastic energy" : ""));
+  line(fmt::format(
+      "state arrays of a contact: pair, feature, overlap area and width, point, normal, normal force, load{}{}",
+      e.friction ? ", shear displacement" : "", e.energy_ledger ? ", elastic energy" : ""));
   line(fmt::format("a frame every {:.4g} of axial strain, {}", scene.frame_interval(),
                    e.breakage ? "answered by xfem with a split" : "no breakage analysis"));
   return text;

@@ -52,6 +52,7 @@ int run(const Arguments& arguments) {
   options.directory = arguments.out;
   options.resume = arguments.resume;
   options.profile = arguments.profile;
+  options.threads = arguments.threads;
   if (arguments.until_frame >= 0) options.until_frame = arguments.until_frame;
 
   dem::RunPorts ports;

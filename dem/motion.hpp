@@ -11,12 +11,18 @@ struct StrainRate {
   double xx = 0, yy = 0;
 };
 
-/// Advances free particles by their forces and boundary particles by the strain rate (without turning), and
-/// accumulates displacements. With `ledger`, adds the work of the boundary to state.energy.
-void advance(State& state, const BodyForces& forces, const StrainRate& rate, bool ledger);
+/// What resists acceleration, inverted once: N each.
+struct InverseInertia {
+  std::vector<double> mass;    ///< [1/kg]
+  std::vector<double> moment;  ///< [1/(kg m^2)]
 
-/// Writes the world outlines of the present positions.
-void transform_outlines(const Particles& particles, std::vector<Vec2>& world);
+  void reset(const Particles& particles);
+};
+
+/// Advances particles first..last-1 by dt [s]: free ones by their forces, boundary particles by the strain rate
+/// (without turning); accumulates displacements. With `ledger`, returns the work of the boundary [J], otherwise 0.
+double advance(Particles& particles, const BodyForces& forces, const InverseInertia& inverse, const StrainRate& rate,
+               double dt, bool ledger, std::size_t first, std::size_t last);
 
 /// Kinetic energy of the free particles [J], at the instant of the velocities.
 double kinetic_energy(const Particles& particles);

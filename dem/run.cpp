@@ -84,7 +84,7 @@ class Run {
     return end ? *end : shear();
   }
 
-  void make_engine(State state) { engine_ = std::make_unique<Engine>(scene_, std::move(state)); }
+  void make_engine(State state) { engine_ = std::make_unique<Engine>(scene_, std::move(state), options_.threads); }
 
   // The sample of another run: its particles and contacts, this scene's laws and coefficients.
   void start_from_sample() {
@@ -130,7 +130,7 @@ class Run {
     Preparation preparation(scene_, *engine_, control_);
     while (control_.phase != Phase::shear) {
       preparation.step();
-      const std::int64_t step = engine_->state().step;
+      const std::int64_t step = engine_->clock().step;
       if (step % 500 == 0) report_preparation();
       if (step % kPreparationInterval == 0 && control_.phase != Phase::shear) {
         write_checkpoint(directory_.preparation(++checkpoint));
@@ -191,10 +191,10 @@ class Run {
     for (;;) {
       while (!shear_stage.frame_due()) {
         shear_stage.step();
-        if (engine_->state().step % scene_.shear.history_interval == 0) history_.record(*engine_, control_);
+        if (engine_->clock().step % scene_.shear.history_interval == 0) history_.record(*engine_, control_);
         if (ports_.interrupted()) return RunEnd::interrupted;
       }
-      if (engine_->state().step % scene_.shear.history_interval != 0) history_.record(*engine_, control_);
+      if (engine_->clock().step % scene_.shear.history_interval != 0) history_.record(*engine_, control_);
       if (const auto end = write_frame_and_exchange()) {
         seconds_["shear"] += seconds_since(begin) - seconds_["write"] - seconds_["exchange"];
         return *end;

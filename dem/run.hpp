@@ -17,6 +17,7 @@ struct RunOptions {
   bool resume = false;
   std::optional<std::int64_t> until_frame;
   std::filesystem::path profile;  ///< seconds and counts per phase as JSON; empty: none
+  int threads = 1;
 };
 
 /// What `run` tells and asks its surroundings; a run is silent without.

@@ -128,6 +128,8 @@ void bind_contact(Specification& keys, Scene& scene) {
               "Cundall local damping coefficient, with effect local_damping");
   keys.number("time_step.safety", scene.time_step.safety, {0, 1, true, false}, "-", UsedBy::dem,
               "dt = safety sqrt(m_min / k_max); too large a value is unstable");
+  keys.number("neighbours.skin", scene.neighbours.skin, {0, 2, true, false}, "diameter_min", UsedBy::dem,
+              "how far particles may approach each other before pairs are searched anew; costs time, not accuracy");
 }
 
 void bind_preparation(Specification& keys, PreparationOptions& preparation) {

@@ -66,6 +66,10 @@ struct TimeStepOptions {
   double safety = 0.25;  ///< dt = safety * sqrt(m_min / k_max)
 };
 
+struct NeighbourOptions {
+  double skin = 0.06;  ///< how far outlines may approach each other before pairs are searched again [diameter_min]
+};
+
 enum class VoidRatioDefinition { e1, e2, e4 };
 
 struct PreparationOptions {
@@ -116,6 +120,7 @@ struct Scene {
   ContactOptions contact;
   DampingOptions damping;
   TimeStepOptions time_step;
+  NeighbourOptions neighbours;
   PreparationOptions preparation;
   ServoOptions servo;
   ShearOptions shear;

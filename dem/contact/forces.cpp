@@ -9,113 +9,93 @@ struct RelativeVelocity {
   double normal, tangential;
 };
 
-RelativeVelocity relative_velocity(const Particles& p, const Contact& c) {
-  const Vec2 arm_a = c.point - p.position[c.a];
-  const Vec2 arm_b = c.point - p.position[c.b];
-  const Vec2 v = p.velocity[c.b] + p.angular_velocity[c.b] * common::perpendicular(arm_b) - p.velocity[c.a] -
-                 p.angular_velocity[c.a] * common::perpendicular(arm_a);
-  return {v.dot(c.normal), v.dot(common::perpendicular(c.normal))};
+RelativeVelocity relative_velocity(const Particles& p, const Pair& pair, const Vec2& point, const Vec2& normal) {
+  const Vec2 arm_a = point - p.position[pair.a];
+  const Vec2 arm_b = point - p.position[pair.b];
+  const Vec2 v = p.velocity[pair.b] + p.angular_velocity[pair.b] * common::perpendicular(arm_b) - p.velocity[pair.a] -
+                 p.angular_velocity[pair.a] * common::perpendicular(arm_a);
+  return {v.dot(normal), v.dot(common::perpendicular(normal))};
 }
 
-// Shear spring and Coulomb limit. Returns true if the contact slides.
-bool apply_friction(Contact& c, double trial_displacement, double friction, double kt) {
-  const double limit = friction * c.normal_force;
-  c.shear_displacement = trial_displacement;
-  c.shear_force = -kt * trial_displacement;
-  if (std::abs(c.shear_force) <= limit) return false;
-  c.shear_force = std::copysign(limit, c.shear_force);
-  c.shear_displacement = -c.shear_force / kt;
-  return true;
-}
+// Forces and stored energy of a contact at one instant; all zero without overlap.
+struct Instant {
+  double normal_force = 0, shear_force = 0, elastic_normal = 0;
+};
 
-// Energies of the step from `before` to `now`; `before` without overlap has all forces zero.
+// Energies of the step from `before` to `now`.
 template <class Law, bool kFriction>
-void book_work(EnergySums& energy, const Contact& before, const Contact& now, const RelativeVelocity& v, double dt,
+void book_work(ContactSums& sums, const Instant& before, const Instant& now, const RelativeVelocity& v, double dt,
                double kt) {
   if constexpr (!Law::kGradient) {
     const double work = -0.5 * (before.normal_force + now.normal_force) * v.normal * dt;
-    energy.contact_law_work += work - (now.elastic_normal - before.elastic_normal);
+    sums.contact_law_work += work - (now.elastic_normal - before.elastic_normal);
   }
   if constexpr (kFriction) {
     const double work = -0.5 * (before.shear_force + now.shear_force) * v.tangential * dt;
     const double stored = 0.5 * (now.shear_force * now.shear_force - before.shear_force * before.shear_force) / kt;
-    energy.friction += work - stored;
+    sums.friction += work - stored;
   }
-}
-
-void add_forces(BodyForces& sums, const Particles& p, const Contact& c) {
-  const Vec2 f = c.force();
-  sums.force[c.a] -= f;
-  sums.force[c.b] += f;
-  sums.moment[c.a] -= common::cross(c.point - p.position[c.a], f);
-  sums.moment[c.b] += common::cross(c.point - p.position[c.b], f);
 }
 
 template <class Law, bool kFriction, bool kLedger>
-void evaluate(State& state, ContactWork& work, const ContactConstants& constants, double dt) {
-  const Particles& p = state.particles;
-  work.previous.swap(state.contacts);
-  state.contacts.clear();
-  work.sliding = 0;
-  work.forces.force.assign(p.size(), Vec2::Zero());
-  work.forces.moment.assign(p.size(), 0.0);
+ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t first, std::size_t last) {
+  const Particles& p = scene.particles;
+  const double kt = scene.constants.tangential_stiffness;
+  ContactSums sums;
+  for (std::size_t k = first; k < last; ++k) {
+    const Pair pair = slots.pair[k];
+    const Overlap o = common::overlap(scene.outlines[pair.a], scene.outlines[pair.b], slots.feature[k]);
+    const bool known = slots.overlap_area[k] > 0;
+    if (!known && !(o.area > 0)) continue;
 
-  const auto outline = [&](std::int32_t i) {
-    const auto first = p.vertex_offset[i];
-    return PolygonView(work.outlines.vertices.data() + first, static_cast<std::size_t>(p.vertex_offset[i + 1] - first));
-  };
-  const auto end_contact = [&](const Contact& before) {
+    Instant before;
     if constexpr (kLedger) {
-      Contact gone = before;
-      gone.normal_force = gone.shear_force = gone.elastic_normal = 0;
-      book_work<Law, kFriction>(state.energy, before, gone, relative_velocity(p, before), dt,
-                                constants.tangential_stiffness);
+      if (known) {
+        before.normal_force = slots.normal_force[k];
+        before.elastic_normal = slots.elastic_normal[k];
+        if constexpr (kFriction) before.shear_force = -kt * slots.shear_displacement[k];
+      }
     }
-  };
-
-  auto before = work.previous.cbegin();
-  const auto last = work.previous.cend();
-  for (const Pair& pair : work.pairs) {
-    while (before != last && (before->a < pair.a || (before->a == pair.a && before->b < pair.b)))
-      end_contact(*before++);
-    const bool known = before != last && before->a == pair.a && before->b == pair.b;
-    const Contact* history = known ? &*before++ : nullptr;
-
-    const double reach = work.outlines.radius[pair.a] + work.outlines.radius[pair.b];
-    Overlap o;
-    if ((p.position[pair.b] - p.position[pair.a]).squaredNorm() < reach * reach &&
-        !(p.boundary[pair.a] && p.boundary[pair.b])) {
-      o = common::overlap(outline(pair.a), outline(pair.b));
-    }
-    if (o.area <= 0) {
-      if (history) end_contact(*history);
+    slots.overlap_area[k] = o.area;
+    if (!(o.area > 0)) {
+      if constexpr (kLedger) {
+        const RelativeVelocity v = relative_velocity(p, pair, slots.point[k], slots.normal[k]);
+        book_work<Law, kFriction>(sums, before, {}, v, scene.dt, kt);
+      }
+      slots.load[k] = {};
       continue;
     }
 
-    Contact c;
-    c.a = pair.a;
-    c.b = pair.b;
-    c.point = Law::point(o);
-    c.normal = o.normal;
-    c.overlap_area = o.area;
-    c.overlap_width = o.width;
-    c.normal_force = Law::force(o, constants);
-    if constexpr (kLedger) c.elastic_normal = Law::energy(o, constants);
-    if constexpr (kFriction || kLedger) {
-      const RelativeVelocity v = relative_velocity(p, c);
+    ++sums.contacts;
+    const Vec2 point = Law::point(o);
+    const Vec2 normal = o.normal;
+    Instant now;
+    now.normal_force = Law::force(o, scene.constants);
+    slots.overlap_width[k] = o.width;
+    slots.point[k] = point;
+    slots.normal[k] = normal;
+    slots.normal_force[k] = now.normal_force;
+    if constexpr (kLedger) slots.elastic_normal[k] = now.elastic_normal = Law::energy(o, scene.constants);
+
+    Vec2 force = now.normal_force * normal;
+    if constexpr (kFriction || (kLedger && !Law::kGradient)) {
+      const RelativeVelocity v = relative_velocity(p, pair, point, normal);
       if constexpr (kFriction) {
-        const double trial = (history ? history->shear_displacement : 0.0) + v.tangential * dt;
-        work.sliding += apply_friction(c, trial, state.friction, constants.tangential_stiffness);
+        const double limit = scene.friction * now.normal_force / kt;
+        double shear = (known ? slots.shear_displacement[k] : 0.0) + v.tangential * scene.dt;
+        const bool slides = std::abs(shear) > limit;
+        shear = slides ? std::copysign(limit, shear) : shear;
+        sums.sliding += slides;
+        slots.shear_displacement[k] = shear;
+        now.shear_force = -kt * shear;
+        force += now.shear_force * common::perpendicular(normal);
       }
-      if constexpr (kLedger) {
-        Contact none;
-        book_work<Law, kFriction>(state.energy, history ? *history : none, c, v, dt, constants.tangential_stiffness);
-      }
+      if constexpr (kLedger) book_work<Law, kFriction>(sums, before, now, v, scene.dt, kt);
     }
-    add_forces(work.forces, p, c);
-    state.contacts.push_back(c);
+    slots.load[k] = {force, -common::cross(point - p.position[pair.a], force),
+                     common::cross(point - p.position[pair.b], force)};
   }
-  while (before != last) end_contact(*before++);
+  return sums;
 }
 
 template <class Law>
@@ -158,6 +138,37 @@ double elastic_energy(const State& state, const ContactConstants& constants) {
     sum += c.elastic_normal + 0.5 * c.shear_force * c.shear_force / constants.tangential_stiffness;
   }
   return sum;
+}
+
+void SlotsOfParticles::reset(std::size_t particles, const std::vector<Pair>& pairs) {
+  offset_.assign(particles + 1, 0);
+  for (const Pair& pair : pairs) {
+    ++offset_[pair.a + 1];
+    ++offset_[pair.b + 1];
+  }
+  for (std::size_t i = 0; i < particles; ++i) offset_[i + 1] += offset_[i];
+  entry_.resize(2 * pairs.size());
+  std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
+  for (std::uint32_t k = 0; k < pairs.size(); ++k) {
+    entry_[next[pairs[k].a]++] = 2 * k;
+    entry_[next[pairs[k].b]++] = 2 * k + 1;
+  }
+}
+
+void SlotsOfParticles::gather(const std::vector<ContactLoad>& loads, std::size_t first, std::size_t last,
+                              BodyForces& forces) const {
+  for (std::size_t i = first; i < last; ++i) {
+    Vec2 force = Vec2::Zero();
+    double moment = 0;
+    for (std::uint32_t e = offset_[i]; e < offset_[i + 1]; ++e) {
+      const ContactLoad& load = loads[entry_[e] / 2];
+      const bool is_b = entry_[e] & 1;
+      force += is_b ? load.force : Vec2(-load.force);
+      moment += is_b ? load.moment_b : load.moment_a;
+    }
+    forces.force[i] = force;
+    forces.moment[i] = moment;
+  }
 }
 
 }  // namespace dem

@@ -1,21 +1,18 @@
-// Forces of all contacts at one instant: overlap -> normal law -> Coulomb friction with history -> particle sums.
+// Forces of all contacts at one instant: overlap -> normal law -> Coulomb friction with history -> load on the two
+// particles; then the resultant on each particle.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "common/config/scene.hpp"
 #include "dem/contact/laws.hpp"
+#include "dem/contact/slots.hpp"
+#include "dem/outlines.hpp"
 #include "dem/state.hpp"
 
 namespace dem {
-
-/// Two particles that may touch before the next rebuild; indices, a < b; a pair list ascends by (a, b).
-struct Pair {
-  std::int32_t a, b;
-};
 
 /// Resultant contact force and moment on each particle.
 struct BodyForces {
@@ -23,28 +20,38 @@ struct BodyForces {
   std::vector<double> moment;  ///< N, about the centroid [N m]
 };
 
-/// World outlines, parallel to Particles::vertices, and bounding radii.
-struct WorldOutlines {
-  std::vector<Vec2> vertices;  ///< V [m]
-  std::vector<double> radius;  ///< N; of the circle about the centroid [m]
+/// What the contacts of one instant do in sum. The works are zero without the energy ledger.
+struct ContactSums {
+  std::int64_t contacts = 0;
+  std::int64_t sliding = 0;     ///< contacts at the Coulomb limit
+  double friction = 0;          ///< dissipated by friction in the step that led here [J]
+  double contact_law_work = 0;  ///< path-dependent work of the normal law [J]
+
+  ContactSums& operator+=(const ContactSums& o) {
+    contacts += o.contacts;
+    sliding += o.sliding;
+    friction += o.friction;
+    contact_law_work += o.contact_law_work;
+    return *this;
+  }
 };
 
-/// What a contact evaluation takes and leaves behind.
-struct ContactWork {
-  std::vector<Pair> pairs;
-  WorldOutlines outlines;
-  BodyForces forces;
-  std::vector<Contact> previous;  ///< contacts of the instant before; the buffers swap
-  std::int64_t sliding = 0;       ///< contacts at the Coulomb limit
+/// What the evaluation of contacts needs to know besides the slots.
+struct ContactScene {
+  const Particles& particles;
+  const WorldOutlines& outlines;
+  const ContactConstants& constants;
+  double friction;  ///< coefficient in force
+  double dt;        ///< time since the last evaluation [s]; 0 re-evaluates the forces without any slip
 };
 
-/// Evaluates the contacts of `work.pairs` at the state's positions. Shear histories advance by the relative velocity
-/// at the contact point (at t - dt/2) times `dt`; dt = 0 re-evaluates forces without any slip. Ring-ring pairs are
-/// left out (DESIGN section 2, Boundary). Adds friction and contact-law work to state.energy if the ledger is on.
+/// Evaluates slots first..last-1. Shear histories advance by the relative velocity at the contact point (at t - dt/2)
+/// times dt.
 ///
 /// Tangential: Cundall & Strack 1979, t = -kt u, |t| <= mu N. Work is integrated by the trapezoidal rule over the
 /// step that led here, so that friction = work - change of elastic energy holds to rounding.
-using EvaluateContacts = void (*)(State& state, ContactWork& work, const ContactConstants& constants, double dt);
+using EvaluateContacts = ContactSums (*)(const ContactScene& scene, ContactSlots& slots, std::size_t first,
+                                         std::size_t last);
 
 struct ContactKernel {
   EvaluateContacts evaluate;
@@ -61,5 +68,18 @@ ContactConstants contact_constants(const common::Scene& scene);
 
 /// Elastic energy stored in the contacts in force [J].
 double elastic_energy(const State& state, const ContactConstants& constants);
+
+/// The slots of each particle, so that resultants are gathered in the same order by any number of threads.
+class SlotsOfParticles {
+ public:
+  void reset(std::size_t particles, const std::vector<Pair>& pairs);
+
+  /// Writes the resultants on particles first..last-1.
+  void gather(const std::vector<ContactLoad>& loads, std::size_t first, std::size_t last, BodyForces& forces) const;
+
+ private:
+  std::vector<std::uint32_t> offset_;
+  std::vector<std::uint32_t> entry_;  ///< slot * 2, + 1 where the particle is b
+};
 
 }  // namespace dem

@@ -5,38 +5,37 @@
 namespace dem {
 namespace {
 
-struct Damped {
-  double force;
-  double dissipated;
-};
+// Drag on one component: force [N] or moment [N m], velocity at t - dt/2.
+double drag(double force, double velocity, double alpha) {
+  return velocity == 0 ? 0 : -std::copysign(alpha * std::abs(force), velocity);
+}
 
-// One component: force [N] or moment [N m], velocity at t - dt/2, inverse inertia. The work uses the mean of the
-// velocities before and after the step, as the kinetic energy does.
-Damped damp(double force, double velocity, double inverse_inertia, double alpha, double dt) {
-  if (velocity == 0) return {force, 0};
-  const double drag = -alpha * std::abs(force) * std::copysign(1.0, velocity);
-  const double damped = force + drag;
-  const double mean_velocity = velocity + 0.5 * damped * inverse_inertia * dt;
-  return {damped, -drag * mean_velocity * dt};
+// Energy that the drag takes out. The work uses the mean of the velocities before and after the step, as the kinetic
+// energy does.
+double dissipated(double damped, double drag, double velocity, double inverse_inertia, double dt) {
+  return -drag * (velocity + 0.5 * damped * inverse_inertia * dt) * dt;
 }
 
 }  // namespace
 
-void apply_local_damping(State& state, BodyForces& forces, double alpha, bool ledger) {
-  const Particles& p = state.particles;
-  double dissipated = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
+double apply_local_damping(const Particles& p, const InverseInertia& inverse, BodyForces& forces, double alpha,
+                           double dt, bool ledger, std::size_t first, std::size_t last) {
+  double sum = 0;
+  for (std::size_t i = first; i < last; ++i) {
     if (p.boundary[i]) continue;
-    for (int k = 0; k < 2; ++k) {
-      const Damped d = damp(forces.force[i][k], p.velocity[i][k], 1 / p.mass[i], alpha, state.time_step);
-      forces.force[i][k] = d.force;
-      dissipated += d.dissipated;
+    Vec2& force = forces.force[i];
+    double& moment = forces.moment[i];
+    const Vec2 drag_force(drag(force.x(), p.velocity[i].x(), alpha), drag(force.y(), p.velocity[i].y(), alpha));
+    const double drag_moment = drag(moment, p.angular_velocity[i], alpha);
+    force += drag_force;
+    moment += drag_moment;
+    if (ledger) {
+      sum += dissipated(force.x(), drag_force.x(), p.velocity[i].x(), inverse.mass[i], dt) +
+             dissipated(force.y(), drag_force.y(), p.velocity[i].y(), inverse.mass[i], dt) +
+             dissipated(moment, drag_moment, p.angular_velocity[i], inverse.moment[i], dt);
     }
-    const Damped d = damp(forces.moment[i], p.angular_velocity[i], 1 / p.inertia[i], alpha, state.time_step);
-    forces.moment[i] = d.force;
-    dissipated += d.dissipated;
   }
-  if (ledger) state.energy.damping += dissipated;
+  return sum;
 }
 
 }  // namespace dem

@@ -2,12 +2,13 @@
 // Cundall 1987; Itasca PFC manual. Quasi-static states are reached without a velocity-dependent stress.
 #pragma once
 
-#include "dem/contact/forces.hpp"
-#include "dem/state.hpp"
+#include "dem/motion.hpp"
 
 namespace dem {
 
-/// Changes the resultants of the free particles in place; with `ledger`, adds the energy taken out to state.energy.
-void apply_local_damping(State& state, BodyForces& forces, double alpha, bool ledger);
+/// Changes the resultants of the free particles among first..last-1 in place. With `ledger`, returns the energy that
+/// the coming step of dt [s] takes out [J], otherwise 0.
+double apply_local_damping(const Particles& particles, const InverseInertia& inverse, BodyForces& forces, double alpha,
+                           double dt, bool ledger, std::size_t first, std::size_t last);
 
 }  // namespace dem

@@ -90,7 +90,7 @@ void Preparation::step() {
     control_.steps_to_ring = kRingInterval - 1;
   }
   if (control_.phase == Phase::compaction) {
-    engine_.scale_positions(1 - scene_.preparation.compaction_rate * engine_.state().time_step);
+    engine_.scale_positions(1 - scene_.preparation.compaction_rate * engine_.clock().time_step);
   }
   engine_.step({control_.servo_x.rate, control_.servo_y.rate});
   if (control_.steps_to_servo-- <= 0) {

@@ -39,7 +39,7 @@ void Shear::begin(Engine& engine, Control& control) {
 double Shear::axial_rate() const {
   const double rate = scene_.shear.strain_rate;
   const double ramp = 2 * scene_.shear.ramp_strain / rate;
-  const double time = engine_.state().time;
+  const double time = engine_.clock().time;
   if (time >= ramp) return rate;
   const double s = time / ramp;
   return rate * s * s * (3 - 2 * s);
@@ -58,10 +58,10 @@ void Shear::step() {
     control_.steps_to_servo = kServoInterval - 1;
   }
   const StrainRate rate{control_.servo_x.rate, axial_rate()};
-  control_.stretch_x *= 1 - rate.xx * engine_.state().time_step;
-  control_.stretch_y *= 1 - rate.yy * engine_.state().time_step;
+  control_.stretch_x *= 1 - rate.xx * engine_.clock().time_step;
+  control_.stretch_y *= 1 - rate.yy * engine_.clock().time_step;
   engine_.step(rate);
-  control_.contact_steps += static_cast<double>(engine_.state().contacts.size());
+  control_.contact_steps += static_cast<double>(engine_.contacts());
 }
 
 std::int64_t Shear::last_frame() const {

@@ -130,7 +130,7 @@ TEST_CASE("in a sheared pile every contact respects Coulomb's cap, some slide, a
     dem::renew_ring(engine);
     for (int k = 0; k < 20000 && engine.state().contacts.size() < 90; ++k) engine.step({0.3, 0.3});
     REQUIRE(engine.state().contacts.size() >= 90);
-    dem::Engine renewed = engine;
+    dem::Engine renewed(scene, engine.state());
     engine.edit().energy = {};
     const double start = stored(engine);
     const double kt = engine.constants().tangential_stiffness;
