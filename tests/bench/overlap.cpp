@@ -13,11 +13,12 @@ struct PairOutlines {
 
 std::vector<PairOutlines> pairs(bool touching) {
   const dem::State& state = bench::pile();
-  std::vector<common::Vec2> world;
-  dem::transform_outlines(state.particles, world);
   const auto outline = [&](std::size_t i) {
-    return common::Polygon(world.begin() + state.particles.vertex_offset[i],
-                           world.begin() + state.particles.vertex_offset[i + 1]);
+    const common::Rotation rotation(state.particles.angle[i]);
+    common::Polygon world;
+    for (const common::Vec2& v : state.particles.outline(i))
+      world.push_back(state.particles.position[i] + rotation * v);
+    return world;
   };
   std::vector<PairOutlines> found;
   for (std::size_t i = 0; i < state.particles.size(); ++i) {
