@@ -27,13 +27,16 @@ constexpr Definition kAlways[] = {
     {"stress_xx", "Pa", "mean stress, Eq. 13, compression positive"},
     {"stress_yy", "Pa", "mean stress, Eq. 13, compression positive"},
     {"stress_xy", "Pa", "mean stress, Eq. 13, compression positive"},
+    {"stress_interior_xx", "Pa", "mean over the ellipse of 0.7 of the ring's axes, compression positive"},
+    {"stress_interior_yy", "Pa", "mean over the ellipse of 0.7 of the ring's axes, compression positive"},
     {"void_ratio", "-", "in the scene's definition"},
     {"void_ratio_e1", "-", "ring polygon / solids inside it - 1"},
     {"void_ratio_e2", "-", "e1 with the overlaps subtracted from the solids"},
-    {"void_ratio_e4", "-", "ring polygon / area of the non-boundary particles - 1"},
+    {"void_ratio_e4", "-", "ring polygon / area of the particles that are not in the ring - 1"},
     {"assembly_area", "m^2", "area of the polygon that joins the ring centroids"},
     {"solid_area", "m^2", "area of all particles"},
     {"particles", "-", "number of particles"},
+    {"escaped", "-", "particles outside the ring that touch nothing"},
     {"contacts", "-", "number of contacts in force"},
     {"broken", "-", "particles broken so far"},
     {"unbalanced_force", "-", "mean |sum F| of the free particles / mean normal force"},
@@ -114,6 +117,7 @@ void History::record(const Engine& engine, const Control& control) {
   const State& state = engine.state();
   const double area = ring_area(state);
   const auto stress = mean_stress(state, area);
+  const auto interior = interior_stress(state, area);
   const VoidRatios e = void_ratios(state);
   const Health health = engine.health();
   double solid = 0;
@@ -133,6 +137,8 @@ void History::record(const Engine& engine, const Control& control) {
       stress[0],
       stress[1],
       stress[2],
+      interior[0],
+      interior[1],
       void_ratio(state, scene_.preparation.definition),
       e.e1,
       e.e2,
@@ -140,6 +146,7 @@ void History::record(const Engine& engine, const Control& control) {
       area,
       solid,
       static_cast<double>(state.particles.size()),
+      static_cast<double>(e.escaped),
       static_cast<double>(state.contacts.size()),
       control.broken,
       health.unbalanced_force,

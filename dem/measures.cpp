@@ -1,11 +1,15 @@
 #include "dem/measures.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/math/arc_tangent.hpp"
 
 namespace dem {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
+constexpr double kInterior = 0.7;  // of the assembly's axes
 
 /// True if the polygon of the ring centroids goes around `point` (crossings of the ray to the right).
 bool inside_ring(const State& state, const Vec2& point) {
@@ -19,6 +23,17 @@ bool inside_ring(const State& state, const Vec2& point) {
     if ((q.y() > p.y()) == (side > 0)) inside = !inside;
   }
   return inside;
+}
+
+/// Share of the way from p to q inside the unit circle.
+double share_inside(const Vec2& p, const Vec2& q) {
+  const Vec2 way = q - p;
+  const double a = way.squaredNorm();
+  const double b = p.dot(way);
+  const double discriminant = b * b - a * (p.squaredNorm() - 1);
+  if (!(discriminant > 0)) return 0;
+  const double root = std::sqrt(discriminant);
+  return std::max(0.0, std::min(1.0, (root - b) / a) - std::max(0.0, (-b - root) / a));
 }
 
 /// Interior angle at `at` of a counter-clockwise polygon, in [0, 2 pi).
@@ -50,9 +65,14 @@ VoidRatios void_ratios(const State& state) {
   std::vector<std::uint8_t> held(particles.size(), 0);
   for (const Contact& contact : state.contacts) held[contact.a] = held[contact.b] = 1;
   double interior = 0;
+  int escaped = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (in_ring[i]) continue;
-    if (held[i] || inside_ring(state, particles.position[i])) interior += particles.area[i];
+    if (held[i] || inside_ring(state, particles.position[i])) {
+      interior += particles.area[i];
+    } else {
+      ++escaped;
+    }
   }
   double rim = 0;
   const std::size_t count = state.ring.size();
@@ -71,6 +91,7 @@ VoidRatios void_ratios(const State& state) {
   ratios.e1 = total / (interior + rim) - 1;
   ratios.e2 = total / (interior + rim - overlaps) - 1;
   ratios.e4 = total / interior - 1;
+  ratios.escaped = escaped;
   return ratios;
 }
 
@@ -84,6 +105,34 @@ std::array<double, 3> mean_stress(const State& state, double assembly_area) {
     xy += 0.5 * (force.x() * branch.y() + force.y() * branch.x());
   }
   return {xx / assembly_area, yy / assembly_area, xy / assembly_area};
+}
+
+std::array<double, 3> interior_stress(const State& state, double assembly_area) {
+  const std::vector<Vec2>& at = state.particles.position;
+  const double count = static_cast<double>(state.ring.size());
+  Vec2 middle = Vec2::Zero();
+  for (const std::int32_t i : state.ring) middle += at[i] / count;
+  Vec2 spread = Vec2::Zero();
+  for (const std::int32_t i : state.ring) spread += (at[i] - middle).cwiseAbs2();
+  // An ellipse of the assembly's area whose axes are as those of the ring.
+  const double aspect = std::sqrt(spread.x() / spread.y());
+  const double radius = kInterior * std::sqrt(2 * assembly_area / kTwoPi);
+  const Vec2 scale(1 / (radius * std::sqrt(aspect)), std::sqrt(aspect) / radius);
+
+  double xx = 0, yy = 0, xy = 0;
+  for (const Contact& contact : state.contacts) {
+    const Vec2 from = at[contact.a] - middle;
+    const Vec2 to = at[contact.b] - middle;
+    const double share = share_inside(from.cwiseProduct(scale), to.cwiseProduct(scale));
+    if (share == 0) continue;
+    const Vec2 force = share * contact.force();
+    const Vec2 branch = to - from;
+    xx += force.x() * branch.x();
+    yy += force.y() * branch.y();
+    xy += 0.5 * (force.x() * branch.y() + force.y() * branch.x());
+  }
+  const double area = kInterior * kInterior * assembly_area;
+  return {xx / area, yy / area, xy / area};
 }
 
 }  // namespace dem

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -53,7 +54,7 @@ class Run {
         options_(options),
         ports_(ports),
         hash_(common::config_hash(scene, common::UsedBy::dem)),
-        directory_(options.directory, options.resume),
+        directory_(options.directory, options.resume, [this](const std::string& text) { warn(text); }),
         history_(scene) {}
 
   RunEnd operator()() {
@@ -99,6 +100,15 @@ class Run {
       throw common::bad_input(
           fmt::format("{}: is a checkpoint from the middle of a preparation ({}), expected a prepared sample",
                       scene_.preparation.from, name_of(control_.phase)));
+    }
+    const Particles& p = frame.particles;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const double density = p.mass[i] / p.area[i];
+      if (!(std::abs(density / scene_.material.density - 1) < 1e-9)) {
+        throw common::bad_input(
+            fmt::format("{}: particle {} has a density of {:.6g} kg/m^3, material.density of the scene is {:.6g}",
+                        scene_.preparation.from, p.id[i], density, scene_.material.density));
+      }
     }
     make_engine(to_state(frame));
     engine_->edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;

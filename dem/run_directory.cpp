@@ -34,18 +34,10 @@ std::vector<std::int64_t> numbers_in(const fs::path& folder) {
   return numbers;
 }
 
-// A frame, or nothing if the file is damaged: an older one serves as well.
-std::optional<common::Frame> read_if_whole(const fs::path& path) {
-  try {
-    return common::read_frame(path);
-  } catch (const common::Error&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
-RunDirectory::RunDirectory(fs::path root, bool resume) : root_(std::move(root)) {
+RunDirectory::RunDirectory(fs::path root, bool resume, std::function<void(const std::string&)> warn)
+    : root_(std::move(root)), warn_(std::move(warn)) {
   std::error_code error;
   if (fs::exists(root_, error) && !fs::is_directory(root_, error)) {
     throw common::bad_input(fmt::format("{}: is a file, expected a directory for the run", root_.string()));
@@ -84,6 +76,16 @@ void RunDirectory::check_configuration(const common::Frame& frame, const fs::pat
   throw common::bad_input(
       fmt::format("{}: was made with another configuration; resume with the scene in {}, or name a new directory",
                   path.string(), (root_ / "case.yaml").string()));
+}
+
+// A frame, or nothing if the file is damaged: an older one serves as well.
+std::optional<common::Frame> RunDirectory::read_if_whole(const fs::path& path) const {
+  try {
+    return common::read_frame(path);
+  } catch (const common::Error& error) {
+    warn_(fmt::format("{}; the file is passed over, what it held is computed anew", error.what()));
+    return std::nullopt;
+  }
 }
 
 std::optional<common::Frame> RunDirectory::prepared_sample(const std::string& config_hash) const {

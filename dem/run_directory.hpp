@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,7 +16,8 @@ class RunDirectory {
  public:
   /// Creates DIR with its folders, or checks that an existing one may be used: empty (but for .lock, run.jsonl and
   /// empty folders) unless `resume`. Throws bad_input, io_failure.
-  RunDirectory(std::filesystem::path root, bool resume);
+  /// `warn` is told of every damaged file that a resumed run passes over.
+  RunDirectory(std::filesystem::path root, bool resume, std::function<void(const std::string&)> warn);
 
   std::filesystem::path frame(std::int64_t index) const { return numbered("frames", index); }
   std::filesystem::path split(std::int64_t index) const { return numbered("splits", index); }
@@ -43,7 +45,10 @@ class RunDirectory {
                            const std::string& config_hash) const;
   std::optional<common::Frame> newest(const char* kind, const std::string& config_hash, std::int64_t& index) const;
 
+  std::optional<common::Frame> read_if_whole(const std::filesystem::path& path) const;
+
   std::filesystem::path root_;
+  std::function<void(const std::string&)> warn_;
 };
 
 }  // namespace dem

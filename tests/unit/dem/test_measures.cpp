@@ -1,5 +1,6 @@
 // Oracle: a square lattice of unit squares, whose measures are known by hand.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "dem/measures.hpp"
 
@@ -43,6 +44,8 @@ TEST_CASE("ring polygon and void ratios of a square lattice have their hand valu
 TEST_CASE("a particle that has left the assembly counts in no void ratio, one that touches it does") {
   dem::State state = lattice();
   const auto whole = dem::void_ratios(state);
+  CHECK(whole.escaped == 0);
+  int gone = 0;
   auto& p = state.particles;
   for (const Vec2& at : {Vec2(110, -49), Vec2(101, -40), Vec2(90, -50), Vec2(99, -52)}) {
     p.id.push_back(static_cast<std::int64_t>(p.size()));
@@ -50,6 +53,7 @@ TEST_CASE("a particle that has left the assembly counts in no void ratio, one th
     p.area.push_back(0.5);
     p.boundary.push_back(0);
     const auto e = dem::void_ratios(state);
+    CHECK(e.escaped == ++gone);
     CHECK(e.e1 == whole.e1);
     CHECK(e.e4 == whole.e4);
   }
@@ -95,4 +99,56 @@ TEST_CASE("mean stress of a uniformly loaded lattice is the applied stress") {
   CHECK(stress[0] == Approx(2e3));
   CHECK(stress[1] == Approx(3e3));
   CHECK(stress[2] == Approx(500));
+}
+
+TEST_CASE("interior stress is the average along the branches inside an ellipse of 0.7 of the ring's axes") {
+  // A square lattice of n x n points, twice as high as wide, one contact to the right and one upward of each point but
+  // the last. Forces are 3 N/m times the width of a lattice line, growing along x: stress_yy = 3 (1 + x / 10) at x.
+  constexpr int n = 81;
+  dem::State state;
+  auto& p = state.particles;
+  const auto index = [](int column, int row) { return static_cast<std::int32_t>(row * n + column); };
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column < n; ++column) {
+      p.id.push_back(index(column, row));
+      p.position.push_back(Vec2(0.25 * (column - 40) + 7, 0.5 * (row - 40) - 3));
+      p.area.push_back(0.1);
+      p.boundary.push_back(0);
+    }
+  }
+  // The extreme points of an ellipse of semi-axes 10 and 20.
+  state.ring = {index(40, 0), index(80, 40), index(40, 80), index(0, 40)};
+  const auto add = [&](std::int32_t a, std::int32_t b, const Vec2& normal, double force) {
+    dem::Contact contact;
+    contact.a = a;
+    contact.b = b;
+    contact.normal = normal;
+    contact.normal_force = force;
+    contact.shear_force = 0.5 * force;
+    state.contacts.push_back(contact);
+  };
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column < n; ++column) {
+      const double x = 0.25 * (column - 40);
+      if (row + 1 < n) add(index(column, row), index(column, row + 1), Vec2(0, 1), 0.25 * 3 * (1 + x / 10));
+      if (column + 1 < n) add(index(column, row), index(column + 1, row), Vec2(1, 0), 0.5 * 2);
+    }
+  }
+  const double area = 3.14159265358979323846 * 10 * 20;
+  const auto stress = dem::interior_stress(state, area);
+  // Chords of the lattice lines within the ellipse of semi-axes 7 and 14, times their forces. Two lines just touch the
+  // ellipse: their chords are 0 or the square root of a rounding error.
+  double xx = 0, yy = 0;
+  for (int k = -40; k <= 40; ++k) {
+    const double x = 0.25 * k / 7;
+    const double y = 0.5 * k / 14;
+    if (std::abs(y) < 1) xx += 0.5 * 2 * 14 * std::sqrt(1 - y * y);
+    if (std::abs(x) < 1) yy += 0.25 * 3 * (1 + 0.7 * x) * 28 * std::sqrt(1 - x * x);
+  }
+  CHECK(stress[0] == Approx(xx / (0.49 * area)).epsilon(1e-9));
+  CHECK(stress[1] == Approx(yy / (0.49 * area)).epsilon(1e-9));
+  CHECK(stress[0] == Approx(2).epsilon(5e-3));
+  CHECK(stress[1] == Approx(3).epsilon(5e-3));
+  // Along +y over branches along x, along -x over branches along y: half of the forces, and the mean of both.
+  CHECK(stress[2] == Approx(0.5 * (0.5 * stress[0] - 0.5 * stress[1])).epsilon(1e-12));
 }

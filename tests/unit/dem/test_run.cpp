@@ -77,6 +77,12 @@ TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of t
     CHECK(hash_of(whole / "frames/000002.h5") == last);
     CHECK(text_of(whole / "case.yaml") == resolved);
   }
+  SECTION("a damaged frame is passed over, and said to be") {
+    std::ofstream(whole / "frames/000002.h5", std::ios::binary) << "torn";
+    const Outcome again = go_on(scene, whole);
+    CHECK_THAT(again.warnings, Contains("000002.h5") && Contains("passed over"));
+    CHECK(hash_of(whole / "frames/000002.h5") == last);
+  }
   SECTION("a frame that is reached already is not passed") {
     fs::remove(whole / "frames/000002.h5");
     CHECK(go_on(scene, whole, 1).end == dem::RunEnd::paused);
@@ -103,6 +109,9 @@ TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of t
     follower.preparation.from = (whole / "prepared/sample.h5").string();
     go_on(follower, root / "follower");
     CHECK(hash_of(root / "follower/frames/000002.h5") == last);
+    common::Scene denser = follower;
+    denser.material.density = 2600;
+    CHECK_THROWS_WITH(go_on(denser, root / "denser"), Contains("density of 2500") && Contains("2600"));
     const fs::path early = root / "early/prepared/000000.h5";
     dem::RunPorts ports;
     ports.interrupted = [&] { return fs::exists(early); };
