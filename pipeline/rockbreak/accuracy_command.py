@@ -29,4 +29,4 @@ def accuracy(arguments=None):
         print(write_accuracy(study, plan, seconds))
         raise_failures(plan)
 
-    return guarded(parser.prog, work)
+    return guarded(parser.prog, work, go_on="the same command")

@@ -1,8 +1,8 @@
 """Errors, scatter and cost of the rungs of a ladder.
 
-Of a measure m, on rung r and seed s, the error is e = sqrt(mean over s of (m(r, s) - m(reference, s))^2): paired, so that
-what seeds have in common cancels. Beside it stands the scatter between seeds, sqrt(mean over r of var over s of m(r, s)),
-which any single test has anyway.
+Of a measure m, on rung r and seed s, the error is sqrt(mean over s of (m(r, s) - m(reference, s))^2): paired, so that
+what a seed does to all rungs cancels. Beside it stands the scatter between seeds, sqrt(mean over r of var over s of
+m(r, s)), which any single test has anyway.
 """
 import math
 from dataclasses import dataclass, field

@@ -90,13 +90,14 @@ def draw_panel(panel, ladder, measure, floor):
                    clip_on=False)
         panel.annotate(rung.label, (x, y), xytext=(0, 7), textcoords="offset points", ha="center", fontsize=8,
                        color=VERMILION if base else INK)
-    panel.set_xscale("log")
     panel.margins(x=0.15, y=0.2)
     panel.set_ylim(bottom=0)
-    few = len(points) > 0 and max(x for x, _, _ in points) < 10 * min(x for x, _, _ in points)
-    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if few else (1,)))
-    panel.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    panel.xaxis.set_minor_formatter(NullFormatter())
+    range_of_costs = max(x for x, _, _ in points) / min(x for x, _, _ in points) if points else 1
+    if range_of_costs > 2:
+        panel.set_xscale("log")
+        panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if range_of_costs < 50 else (1,)))
+        panel.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        panel.xaxis.set_minor_formatter(NullFormatter())
     panel.set_xlabel("CPU time [s]")
     panel.set_ylabel("error")
     panel.set_title(measure)

@@ -94,6 +94,7 @@ def read_measures(file):
     for label, text in measures.items():
         match = MEASURE.fullmatch(text) if isinstance(text, str) else None
         if not match:
-            file.expected(f"measures.{label}", text, "a number of summary.json, or two as in contacts_final / particles_final")
+            file.expected(f"measures.{label}", text, "a number of summary.json, or two as in contacts_final / "
+                          "particles_final")
         found[label] = match.groups()
     return found

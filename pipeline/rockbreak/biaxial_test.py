@@ -32,7 +32,7 @@ OVERVIEW = (  # columns of a campaign's page: heading, number of the summary, fo
     ("peak sin φ", "peak_sin_phi", "{:.3f}"),
     ("at strain", "peak_strain", "{:.1%}"),
     ("residual sin φ", "residual_sin_phi", "{:.3f}"),
-    ("CPU [s]", "cpu_seconds", "{:.3g}"),
+    ("CPU [s]", "cpu_seconds", "{:.1f}"),
 )
 TRENDS = (  # of these, against an axis with numbers
     ("peak sin φ", "peak_sin_phi"), ("residual sin φ", "residual_sin_phi"), ("void ratio, end", "final_void_ratio"),
@@ -54,8 +54,8 @@ def as_words(keys):
 
 def resolve(scene, keys, where):
     """The scene with every default, validated by `dem`; `where` names the row of the table for a message."""
-    process = subprocess.run([executable("dem"), "explain", str(scene), *as_words(keys)], capture_output=True, text=True,
-                             check=False)
+    process = subprocess.run([executable("dem"), "explain", str(scene), *as_words(keys)], capture_output=True,
+                             text=True, check=False)
     if process.returncode != 0:
         said = process.stderr.strip().removeprefix("dem: error: ") or "`dem explain` failed without a message"
         raise RockbreakError(BAD_INPUT, f"{where}: {said}")

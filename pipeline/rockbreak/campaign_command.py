@@ -37,7 +37,7 @@ def campaign(arguments=None):
         seconds = carry_out(plan, parser.prog, options.jobs)
         conclude(table, plan, seconds)
 
-    return guarded(parser.prog, work)
+    return guarded(parser.prog, work, go_on="the same command")
 
 
 def conclude(table, plan, seconds):

@@ -1,4 +1,5 @@
 """Carries out a plan: what is finished is kept, what is interrupted goes on, what fails is reported at the end."""
+from . import biaxial_test as kind
 from .campaign_progress import Tally, make_campaign_progress
 from .driver import catch_signals
 from .errors import Interrupted
@@ -14,9 +15,9 @@ def carry_out(plan, program, slots):
         catch_signals()
         ledger_file = plan.out / "campaign.jsonl"
         with Ledger(ledger_file) as ledger:
-            jobs, run_jobs_of = make_jobs(plan)
-            samples = {job.name: sample for sample, job in run_jobs_of["samples"]}
-            waiting = [job for _, job in run_jobs_of["runs"]]
+            jobs, jobs_of = make_jobs(plan)
+            samples = {job.name: sample for sample, job in jobs_of["samples"]}
+            waiting = [job for _, job in jobs_of["runs"]]
             tally = Tally(jobs, waiting, len(plan.runs) - len(waiting))
             ledger.write("start", runs=len(plan.runs), kept=tally.kept, samples=len(samples), jobs=slots)
             code = 0
@@ -33,7 +34,7 @@ def carry_out(plan, program, slots):
                 code = interrupt.code
                 raise
             finally:
-                for run, job in run_jobs_of["runs"]:
+                for run, job in jobs_of["runs"]:
                     if job.state == "failed":
                         run.failure, run.code = job.reason, job.code
                 learn_summaries(plan)
@@ -62,7 +63,6 @@ def make_jobs(plan):
 
 
 def learn_summaries(plan):
-    from . import biaxial_test as kind
     for run in plan.runs:
         run.summary = kind.read_summary(run.out)
 

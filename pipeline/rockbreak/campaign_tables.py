@@ -1,5 +1,5 @@
-"""The numbers of a campaign: one row per run with all of its summary (campaign.csv), and conditions, which are rows that
-differ by their seed alone, with mean and scatter (the overview)."""
+"""The numbers of a campaign: one row per run with all of its summary (campaign.csv), and conditions, which are rows
+that differ by their seed alone, with mean and scatter (the overview)."""
 import csv
 import io
 import math

@@ -26,7 +26,7 @@ def positive(text):
     return number
 
 
-def guarded(program, work):
+def guarded(program, work, go_on="--resume"):
     """Exit code of `work`; what goes wrong becomes a message for people."""
     try:
         work()
@@ -34,7 +34,7 @@ def guarded(program, work):
         print(f"{program}: {error}", file=sys.stderr)
         return error.code
     except Interrupted as interrupt:
-        print(f"{program}: interrupted; go on with --resume", file=sys.stderr)
+        print(f"{program}: interrupted; go on with {go_on}", file=sys.stderr)
         return interrupt.code
     except KeyboardInterrupt:
         return 130

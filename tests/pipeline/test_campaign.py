@@ -152,7 +152,8 @@ def test_rows_that_mean_the_same_are_one_run(work):
 
 
 def test_runs_share_the_sample_that_their_preparation_sees(work):
-    plan = work.plan(axes={"seed": [1, 2], "variant": TWINS, "shear.strain_rate": [0.02, 0.01], "material.m_i": [25, 20]})
+    plan = work.plan(axes={"seed": [1, 2], "variant": TWINS, "shear.strain_rate": [0.02, 0.01],
+                           "material.m_i": [25, 20]})
     assert len(plan.runs) == 16 and len(plan.samples()) == 2
     assert {run.sample.out.name.rpartition("_")[0] for run in plan.runs} == {"seed-1", "seed-2"}
     denser = work.plan(axes={"seed": [1], "preparation.void_ratio": [0.3, 0.25], "material.density": [2500, 2000]})
@@ -219,7 +220,7 @@ def test_an_interrupted_campaign_ends_its_processes_and_goes_on(work):
     wait_for(lambda: list((work.out / "runs").glob("*/frames/000001.h5")))
     process.send_signal(signal.SIGTERM)
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 143 and "interrupted" in err
+    assert process.returncode == 143 and "interrupted; go on with the same command" in err
     assert processes_of(work.out) == []
     frames = {file: attributes(file)["payload_hash"] for file in (work.out / "runs").glob("*/frames/*.h5")}
     work.calls()
