@@ -63,9 +63,13 @@ def test_bad_input_names_file_key_found_and_expected(work, content, said):
     assert str(caught.value).startswith(str(work.path / "table.yaml"))
 
 
-def test_the_study_of_dem_can_be_read():
+def test_the_study_of_dem_is_valid_and_the_base_is_a_rung_of_every_knob(tmp_path):
     study = read_study(REPOSITORY / "configs" / "accuracy_dem.yaml")
-    assert [len(knob.rungs) for knob in study.knobs] == [5, 5, 5, 5, 5, 3, 4]
+    plan = make_plan(study.campaign, tmp_path / "out")
+    base = plan.row_runs[study.base["1"]]
+    for knob in study.knobs:
+        assert base in [plan.row_runs[knob.variations[label, "1"]] for label in knob.rungs], knob.name
+    assert len(plan.samples()) == 3 * (1 + 4 + 2 + 3), "stiffness, law and size prepare their own"
 
 
 # -- the numbers
