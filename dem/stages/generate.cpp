@@ -7,8 +7,10 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/error.hpp"
+#include "dem/stages/hilbert.hpp"
 
 namespace dem {
 namespace {
@@ -140,27 +142,50 @@ class Placement {
   std::vector<Placed> placed_;
 };
 
-void append(Particles& particles, const Polygon& type, std::int32_t type_index, double diameter, double angle,
-            double density) {
+/// A particle before it has a place and a number.
+struct Draft {
+  std::int32_t type = 0;
+  double angle = 0;
+  Polygon body;  ///< body frame, of its size
+  double area = 0;
+  double bound = 0;  ///< radius about the centroid
+  Vec2 at = Vec2::Zero();
+};
+
+/// The drafts' numbers in the order in which Hilbert's curve through the circle of `radius` meets their places.
+std::vector<std::size_t> order_in_space(const std::vector<Draft>& drafts, double radius) {
+  constexpr int kLevels = 16;
+  constexpr double kCells = 1 << kLevels;
+  const auto cell = [radius](double coordinate) {
+    return static_cast<std::uint32_t>(std::clamp((coordinate / radius + 1) / 2 * kCells, 0.0, kCells - 1));
+  };
+  std::vector<std::pair<std::uint64_t, std::size_t>> places;
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    places.emplace_back(hilbert_index(cell(drafts[i].at.x()), cell(drafts[i].at.y()), kLevels), i);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::size_t> order;
+  for (const auto& [place, i] : places) order.push_back(i);
+  return order;
+}
+
+void append(Particles& particles, const Draft& draft, double density) {
   const auto id = static_cast<std::int64_t>(particles.size());
-  Polygon body = type;
-  for (Vec2& vertex : body) vertex *= diameter;
-  const double area = common::area(body);
   particles.id.push_back(id);
   particles.parent.push_back(-1);
   particles.root.push_back(id);
   particles.generation.push_back(0);
-  particles.type.push_back(type_index);
-  particles.position.push_back(Vec2::Zero());
+  particles.type.push_back(draft.type);
+  particles.position.push_back(draft.at);
   particles.velocity.push_back(Vec2::Zero());
   particles.displacement.push_back(Vec2::Zero());
-  particles.angle.push_back(angle);
+  particles.angle.push_back(draft.angle);
   particles.angular_velocity.push_back(0);
-  particles.mass.push_back(density * area);
-  particles.inertia.push_back(density * common::polar_moment(body));
-  particles.area.push_back(area);
+  particles.mass.push_back(density * draft.area);
+  particles.inertia.push_back(density * common::polar_moment(draft.body));
+  particles.area.push_back(draft.area);
   particles.boundary.push_back(0);
-  particles.vertices.insert(particles.vertices.end(), body.begin(), body.end());
+  particles.vertices.insert(particles.vertices.end(), draft.body.begin(), draft.body.end());
   particles.vertex_offset.push_back(static_cast<std::int64_t>(particles.vertices.size()));
 }
 
@@ -179,38 +204,43 @@ std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, commo
 Particles generate_assembly(const common::AssemblyOptions& options, double density, std::uint64_t seed) {
   common::Random random(seed);
   const std::vector<Polygon> types = make_shape_types(options.shapes, random);
-  Particles particles;
-  for (int i = 0; i < options.particles; ++i) {
-    const std::uint64_t type = random.index(types.size());
+  std::vector<Draft> drafts(static_cast<std::size_t>(options.particles));
+  for (Draft& draft : drafts) {
+    draft.type = static_cast<std::int32_t>(random.index(types.size()));
+    draft.body = types[static_cast<std::size_t>(draft.type)];
     const double diameter = random.uniform(options.diameter_min, options.diameter_max);
-    const double angle = random.uniform(0, kTwoPi);
-    append(particles, types[type], static_cast<std::int32_t>(type), diameter, angle, density);
+    draft.angle = random.uniform(0, kTwoPi);
+    for (Vec2& vertex : draft.body) vertex *= diameter;
+    draft.area = common::area(draft.body);
+    draft.bound = common::radius_about(draft.body, Vec2::Zero());
   }
 
-  std::vector<Polygon> turned(particles.size());
-  std::vector<double> bound(particles.size());
   double solids = 0;
   double largest = 0;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const common::Rotation rotation(particles.angle[i]);
-    for (const Vec2& vertex : particles.outline(i)) turned[i].push_back(rotation * vertex);
-    bound[i] = common::radius_about(particles.outline(i), Vec2::Zero());
-    solids += particles.area[i];
-    largest = std::max(largest, bound[i]);
+  for (const Draft& draft : drafts) {
+    solids += draft.area;
+    largest = std::max(largest, draft.bound);
   }
-  std::vector<std::size_t> order(particles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return bound[l] > bound[r]; });
+  std::vector<std::size_t> by_size(drafts.size());
+  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](std::size_t l, std::size_t r) { return drafts[l].bound > drafts[r].bound; });
 
   for (double radius = std::max(std::sqrt(2 * solids / (kTwoPi * kFirstSolidFraction)), 1.01 * largest);;
        radius *= kGrowth) {
     Placement placement(radius, largest);
-    const bool all = std::all_of(order.begin(), order.end(), [&](std::size_t i) {
-      const std::optional<Vec2> at = placement.place(turned[i], bound[i], random);
-      if (at) particles.position[i] = *at;
+    const bool all = std::all_of(by_size.begin(), by_size.end(), [&](std::size_t i) {
+      const common::Rotation rotation(drafts[i].angle);
+      Polygon turned = drafts[i].body;
+      for (Vec2& vertex : turned) vertex = rotation * vertex;
+      const std::optional<Vec2> at = placement.place(turned, drafts[i].bound, random);
+      if (at) drafts[i].at = *at;
       return at.has_value();
     });
-    if (all) return particles;
+    if (!all) continue;
+    Particles particles;
+    for (const std::size_t i : order_in_space(drafts, radius)) append(particles, drafts[i], density);
+    return particles;
   }
 }
 

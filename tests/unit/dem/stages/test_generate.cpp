@@ -113,6 +113,24 @@ TEST_CASE("an assembly is a function of its seed") {
   CHECK_FALSE(same(first.position, other.position));
 }
 
+TEST_CASE("particles that are near in space are near in memory") {
+  const auto particles = dem::generate_assembly(assembly(2000), 2500, 4);
+  double apart = 0;
+  int pairs = 0, close = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((particles.position[i] - particles.position[j]).norm() > 0.6) continue;
+      apart += static_cast<double>(i - j);
+      close += i - j <= 8;
+      ++pairs;
+    }
+  }
+  REQUIRE(pairs > 2000);
+  // Numbers at random would be n / 3 = 667 apart and 1 % within 8; row by row, 28 apart but only 40 % within 8.
+  CHECK(apart / pairs < 60);
+  CHECK(close > 0.65 * pairs);
+}
+
 TEST_CASE("one particle, equal sizes and sizes of 10 to 1 can be placed") {
   CHECK(dem::generate_assembly(assembly(1), 2500, 1).size() == 1);
   auto options = assembly(200);
