@@ -5,6 +5,9 @@
 namespace dem {
 namespace {
 
+/// Slots by which the particles of a pair are fetched before they are needed.
+constexpr std::size_t kAhead = 8;
+
 struct RelativeVelocity {
   double normal, tangential;
 };
@@ -44,6 +47,14 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
   ContactSums sums;
   for (std::size_t k = first; k < last; ++k) {
     const Pair pair = slots.pair[k];
+    if (k + kAhead < slots.size()) {
+      const Pair& coming = slots.pair[k + kAhead];
+      scene.outlines.prefetch(coming.a);
+      scene.outlines.prefetch(coming.b);
+      __builtin_prefetch(&p.position[coming.b]);
+      __builtin_prefetch(&p.velocity[coming.b]);
+      __builtin_prefetch(&p.angular_velocity[coming.b]);
+    }
     const Overlap o = common::overlap(scene.outlines[pair.a], scene.outlines[pair.b], slots.feature[k]);
     const bool known = slots.overlap_area[k] > 0;
     if (!known && !(o.area > 0)) continue;
