@@ -18,7 +18,7 @@ std::string explain(const common::Scene& scene) {
                    on(e.local_damping), on(e.energy_ledger), on(e.breakage)));
   line(fmt::format("contact kernel: {}", kernel.name));
   line(fmt::format("  normal stiffness {:.4g} {}, reference length {:.4g} m", constants.normal_stiffness,
-                   scene.contact.law == common::ContactLaw::area ? "N/m^2" : "N/m", constants.length));
+                   common::stiffness_is_per_area(scene.contact.law) ? "N/m^2" : "N/m", constants.length));
   if (e.friction) line(fmt::format("  tangential stiffness {:.4g} N/m", constants.tangential_stiffness));
   line(fmt::format("body effects, one call per step: {}", e.local_damping ? "local damping" : "none"));
   line(

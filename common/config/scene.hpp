@@ -49,11 +49,16 @@ struct AssemblyOptions {
   ShapeOptions shapes;
 };
 
-enum class ContactLaw { mean_depth, area, potential };
+enum class ContactLaw { mean_depth, area, potential, foundation };
+
+/// True if the law's normal stiffness is in N/m^2, false if in N/m.
+inline bool stiffness_is_per_area(ContactLaw law) {
+  return law == ContactLaw::area || law == ContactLaw::foundation;
+}
 
 struct ContactOptions {
   ContactLaw law = ContactLaw::area;
-  double normal_stiffness = 5e9;               ///< N/m for mean_depth and potential, N/m^2 for area
+  double normal_stiffness = 5e9;               ///< N/m for mean_depth and potential, N/m^2 for area and foundation
   std::optional<double> tangential_stiffness;  ///< [N/m]; absent (auto): see contact/laws
   double friction = 0.5;                       ///< Coulomb coefficient in shear [-]
 };

@@ -205,11 +205,29 @@ void find_chord(const Outline& outline, const Vec2& origin, const OutlineView& a
   }
 }
 
+/// The outline of an overlap with two crossings, if both polygons have corners on it.
+void write(const Outline& outline, const Vec2& origin, OverlapOutline& result) {
+  const int n = outline.size;
+  const auto of_b = static_cast<int>(std::count(outline.from_b, outline.from_b + n, true));
+  if (of_b == 1 || of_b == n - 1) return;
+  int start = 0;
+  while (!outline.from_b[start] || outline.from_b[start > 0 ? start - 1 : n - 1]) ++start;
+  const Point base = outline.vertex[start];
+  result.size = n;
+  result.first_a = of_b;
+  result.origin = {origin.x() + base.x, origin.y() + base.y};
+  for (int k = 0, i = start; k < n; ++k, i = i + 1 < n ? i + 1 : 0) {
+    result.x[k] = outline.vertex[i].x - base.x;
+    result.y[k] = outline.vertex[i].y - base.y;
+  }
+}
+
 }  // namespace
 
-Overlap clip_overlap(const OutlineView& a, const OutlineView& b) {
+Overlap clip_overlap(const OutlineView& a, const OutlineView& b, OverlapOutline* outline) {
   assert(a.size >= 3 && b.size >= 3 && a.size + b.size <= kMaxOverlapVertices);
   Overlap result;
+  if (outline) outline->size = 0;
   const Vec2 origin = a[0];
   Outline buffers[2];
   Outline* from = &buffers[0];
@@ -232,6 +250,7 @@ Overlap clip_overlap(const OutlineView& a, const OutlineView& b) {
   }
   measure(*from, origin, result);
   if (result.area > 0) find_chord(*from, origin, a, b, result);
+  if (outline && result.crossings == 2) write(*from, origin, *outline);
   return result;
 }
 

@@ -215,6 +215,26 @@ inline bool within(const Line& edge, const Line& origin, double x, double y) {
   return along >= 0 && along <= edge.dx * edge.dx + edge.dy * edge.dy;
 }
 
+/// Adds vertices to an outline, relative to its first one.
+class OutlineWriter {
+ public:
+  /// `origin` and, relative to it, the first vertex.
+  OutlineWriter(OverlapOutline& outline, const Vec2& origin, const Vec2& first) : outline_(outline), first_(first) {
+    outline.origin = origin + first;
+    outline.x[0] = outline.y[0] = 0;
+    outline.size = 1;
+  }
+  void add(double x, double y) {
+    outline_.x[outline_.size] = x - first_.x();
+    outline_.y[outline_.size] = y - first_.y();
+    ++outline_.size;
+  }
+
+ private:
+  OverlapOutline& outline_;
+  Vec2 first_;
+};
+
 /// What `follow` found; the edges of p at the crossings.
 struct Found {
   int entry = -1;  ///< -1: not two plain crossings
@@ -223,7 +243,8 @@ struct Found {
 
 /// The overlap of p and q if it is bounded by two proper crossings, `seen` being q's vertices inside edge e of p.
 template <int kPadded>
-Found follow(const OutlineView& p, const OutlineView& q, int e, Set seen, double sign, Overlap& result) {
+Found follow(const OutlineView& p, const OutlineView& q, int e, Set seen, double sign, Overlap& result,
+             OverlapOutline* outline) {
   Set in = 0;
   for (Set rest = seen; rest; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
@@ -282,6 +303,19 @@ Found follow(const OutlineView& p, const OutlineView& q, int e, Set seen, double
     fan.add(p.x[i] - edge1.x, p.y[i] - edge1.y);
   }
   if (!fan.measure(edge1, x2, y2, sign, result)) return {};
+  if (outline && j1 != j2 && sign > 0) {
+    OutlineWriter writer(*outline, {edge1.x, edge1.y}, {x1, y1});
+    for (int i = k;; i = next(q, i)) {
+      writer.add(q.x[i] - edge1.x, q.y[i] - edge1.y);
+      if (i == l) break;
+    }
+    outline->first_a = outline->size;
+    writer.add(x2, y2);
+    for (int i = j2; i != j1;) {
+      i = next(p, i);
+      writer.add(p.x[i] - edge1.x, p.y[i] - edge1.y);
+    }
+  }
   return {j1, j2};
 }
 
@@ -321,7 +355,8 @@ inline PairFeature feature_of(bool is_b, int edge) {
 
 /// Nothing known helped: looks at all edges.
 template <int kPadded>
-[[gnu::noinline]] void search(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result) {
+[[gnu::noinline]] void search(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result,
+                              OverlapOutline* outline) {
   const Best of_a = best_edge(a, b);
   const Best of_b = best_edge(b, a);
   const bool is_b = of_b.value < of_a.value;
@@ -330,7 +365,7 @@ template <int kPadded>
   if (best.highest <= 0) return;
   const auto found = [&](const OutlineView& p, const OutlineView& q, int edge, double sign) {
     const Set seen = above<kPadded>(q, edge_line(p, edge)) & all(q.size);
-    return follow<kPadded>(p, q, edge, seen, sign, result);
+    return follow<kPadded>(p, q, edge, seen, sign, result, outline);
   };
   if (is_b) {
     const Found of = found(b, a, best.edge, -1);
@@ -344,54 +379,56 @@ template <int kPadded>
   if (of.entry >= 0) {
     feature = feature_of(false, of.entry == of_a.edge || of.exit == of_a.edge ? of_a.edge : of.entry);
   } else {
-    result = clip_overlap(a, b);
+    result = clip_overlap(a, b, outline);
   }
 }
 
 /// q has vertices inside the edge that was remembered.
 template <int kPadded>
 [[gnu::noinline]] void touch(const OutlineView& a, const OutlineView& b, PairFeature& feature, bool is_b, int e,
-                             Set seen, Overlap& result) {
+                             Set seen, Overlap& result, OverlapOutline* outline) {
   const OutlineView& p = is_b ? b : a;
   const OutlineView& q = is_b ? a : b;
   seen &= all(q.size);
   const double sign = is_b ? -1 : 1;
   if (poke<kPadded>(p, q, e, edge_line(p, e), seen, sign, result)) return;
-  const Found found = follow<kPadded>(p, q, e, seen, sign, result);
+  const Found found = follow<kPadded>(p, q, e, seen, sign, result, outline);
   if (found.entry >= 0 && (!is_b || found.entry == found.exit)) {
     if (found.entry != e && found.exit != e) feature.edge = static_cast<std::uint8_t>(found.entry);
     return;
   }
   result = Overlap{};
-  search<kPadded>(a, b, feature, result);
+  search<kPadded>(a, b, feature, result, outline);
 }
 
 template <int kPadded>
-[[gnu::always_inline]] inline Overlap start(const OutlineView& a, const OutlineView& b, PairFeature& feature) {
+[[gnu::always_inline]] inline Overlap start(const OutlineView& a, const OutlineView& b, PairFeature& feature,
+                                            OverlapOutline* outline) {
   const bool is_b = feature.owner == 2;
   const OutlineView& p = is_b ? b : a;
   const OutlineView& q = is_b ? a : b;
   const int e = feature.edge < p.size ? feature.edge : 0;
   const Set seen = above<kPadded>(q, edge_line(p, e));
   Overlap result;
-  if (seen != 0) touch<kPadded>(a, b, feature, is_b, e, seen, result);
+  if (seen != 0) touch<kPadded>(a, b, feature, is_b, e, seen, result, outline);
   return result;
 }
 
 }  // namespace
 
-Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature) {
+Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
+  if (outline) outline->size = 0;
   assert(a.size >= 3 && b.size >= 3 && a.size + b.size <= kMaxOverlapVertices);
-  if (a.padded == 8 && b.padded == 8) return start<8>(a, b, feature);
-  if (a.size <= kMaxFast && b.size <= kMaxFast) return start<0>(a, b, feature);
-  return clip_overlap(a, b);
+  if (a.padded == 8 && b.padded == 8) return start<8>(a, b, feature, outline);
+  if (a.size <= kMaxFast && b.size <= kMaxFast) return start<0>(a, b, feature, outline);
+  return clip_overlap(a, b, outline);
 }
 
-Overlap overlap(PolygonView a, PolygonView b) {
+Overlap overlap(PolygonView a, PolygonView b, OverlapOutline* outline) {
   alignas(32) double coordinates[4][kMaxOverlapVertices];
   PairFeature unknown;
   return overlap(pack_outline(a.begin(), a.end(), coordinates[0], coordinates[1]),
-                 pack_outline(b.begin(), b.end(), coordinates[2], coordinates[3]), unknown);
+                 pack_outline(b.begin(), b.end(), coordinates[2], coordinates[3]), unknown, outline);
 }
 
 }  // namespace common

@@ -34,17 +34,30 @@ struct PairFeature {
   std::uint8_t edge = 0;   ///< from vertex `edge` to the next one
 };
 
-/// Overlap of two convex counter-clockwise polygons, at most kMaxOverlapVertices vertices together.
-/// Never allocates, never fails: touching or separated polygons give area 0.
-/// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, if the coordinates are relative to one of the
-/// two particles.
-Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature);
-
-/// The same of a single pair, nothing being known of it.
-Overlap overlap(PolygonView a, PolygonView b);
-
 inline constexpr int kMaxOverlapVertices = 128;
 /// Most vertices of one particle.
 inline constexpr int kMaxParticleVertices = kMaxOverlapVertices / 2;
+
+/// The overlap polygon where there are two crossings and both bodies have corners inside the other one,
+/// counter-clockwise, from the crossing at which b's boundary begins. Edges 0..first_a-1 are pieces of b's boundary,
+/// the others of a's; vertices 0 and first_a are the crossings.
+struct OverlapOutline {
+  int size;  ///< 0: one of the boundaries is straight, or not two crossings; nothing below is set
+  int first_a;
+  Vec2 origin;                    ///< vertex 0 [m]
+  double x[kMaxOverlapVertices];  ///< relative to the origin [m]
+  double y[kMaxOverlapVertices];
+
+  OverlapOutline() {}  // leaves its 2 KB as they are
+};
+
+/// Overlap of two convex counter-clockwise polygons, at most kMaxOverlapVertices vertices together.
+/// Never allocates, never fails: touching or separated polygons give area 0.
+/// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, if the coordinates are relative to one of the
+/// two particles. Writes `outline` if it is wanted.
+Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline = nullptr);
+
+/// The same of a single pair, nothing being known of it.
+Overlap overlap(PolygonView a, PolygonView b, OverlapOutline* outline = nullptr);
 
 }  // namespace common

@@ -55,7 +55,9 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
       __builtin_prefetch(&p.velocity[coming.b]);
       __builtin_prefetch(&p.angular_velocity[coming.b]);
     }
-    const Overlap o = common::overlap(scene.outlines[pair.a], scene.outlines[pair.b], slots.feature[k]);
+    common::OverlapOutline outline;
+    const Overlap o = common::overlap(scene.outlines[pair.a], scene.outlines[pair.b], slots.feature[k],
+                                      Law::kOutline ? &outline : nullptr);
     const bool known = slots.overlap_area[k] > 0;
     if (!known && !(o.area > 0)) continue;
 
@@ -78,15 +80,16 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
     }
 
     ++sums.contacts;
-    const Vec2 point = Law::point(o);
-    const Vec2 normal = o.normal;
+    const NormalAction action = Law::action(o, outline, scene.constants);
+    const Vec2& point = action.point;
+    const Vec2& normal = action.normal;
     Instant now;
-    now.normal_force = Law::force(o, scene.constants);
+    now.normal_force = action.force;
     slots.overlap_width[k] = o.width;
     slots.point[k] = point;
     slots.normal[k] = normal;
     slots.normal_force[k] = now.normal_force;
-    if constexpr (kLedger) slots.elastic_normal[k] = now.elastic_normal = Law::energy(o, scene.constants);
+    if constexpr (kLedger) slots.elastic_normal[k] = now.elastic_normal = action.energy;
 
     Vec2 force = now.normal_force * normal;
     if constexpr (kFriction || (kLedger && !Law::kGradient)) {
@@ -127,6 +130,8 @@ ContactKernel select_contact_kernel(common::ContactLaw law, const common::Effect
       return kernel_of<MeanDepthLaw>(effects);
     case common::ContactLaw::area:
       return kernel_of<AreaLaw>(effects);
+    case common::ContactLaw::foundation:
+      return kernel_of<FoundationLaw>(effects);
     case common::ContactLaw::potential:
       break;
   }
@@ -137,9 +142,8 @@ ContactConstants contact_constants(const common::Scene& scene) {
   ContactConstants c;
   c.normal_stiffness = scene.contact.normal_stiffness;
   c.length = 0.5 * (scene.assembly.diameter_min + scene.assembly.diameter_max);
-  const bool area_law = scene.contact.law == common::ContactLaw::area;
-  c.tangential_stiffness =
-      scene.contact.tangential_stiffness.value_or(area_law ? 0.2 * c.normal_stiffness * c.length : c.normal_stiffness);
+  c.tangential_stiffness = scene.contact.tangential_stiffness.value_or(
+      common::stiffness_is_per_area(scene.contact.law) ? 0.2 * c.normal_stiffness * c.length : c.normal_stiffness);
   return c;
 }
 

@@ -63,7 +63,7 @@ struct ContactKernel {
 ContactKernel select_contact_kernel(common::ContactLaw law, const common::Effects& effects);
 
 /// Contact constants of a scene. An absent tangential stiffness is kn for mean_depth and potential, and
-/// 0.2 kA L for the area law (the slope of a contact a fifth of a diameter wide).
+/// 0.2 k L for area and foundation (the slope of a contact a fifth of a diameter wide).
 ContactConstants contact_constants(const common::Scene& scene);
 
 /// Elastic energy stored in the contacts in force [J].

@@ -8,7 +8,7 @@ namespace {
 void steps(benchmark::State& state, common::ContactLaw law) {
   common::Scene scene = bench::pile_scene();
   scene.contact.law = law;
-  if (law != common::ContactLaw::area) scene.contact.normal_stiffness = 1e9;
+  if (!common::stiffness_is_per_area(law)) scene.contact.normal_stiffness = 1e9;
   dem::Engine engine(scene, bench::pile());
   for (auto _ : state) engine.step({0.0, 0.0});
   state.SetItemsProcessed(engine.contact_steps());
@@ -16,5 +16,6 @@ void steps(benchmark::State& state, common::ContactLaw law) {
 BENCHMARK_CAPTURE(steps, mean_depth, common::ContactLaw::mean_depth);
 BENCHMARK_CAPTURE(steps, area, common::ContactLaw::area);
 BENCHMARK_CAPTURE(steps, potential, common::ContactLaw::potential);
+BENCHMARK_CAPTURE(steps, foundation, common::ContactLaw::foundation);
 
 }  // namespace

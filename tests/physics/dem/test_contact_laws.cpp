@@ -1,4 +1,4 @@
-// Oracle: hand values of the three normal laws for a face contact, and the period of the oscillator they make.
+// Oracle: hand values of the normal laws for a face contact, and the period of the oscillator they make.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -44,6 +44,7 @@ TEST_CASE("face contacts have the forces and energies of their law, whatever the
       } const wanted[] = {
           {ContactLaw::mean_depth, k * depth, k * depth * depth / 2},
           {ContactLaw::area, k * area, k * area * depth / 2},
+          {ContactLaw::foundation, k * area, k * area * depth / 2},
           {ContactLaw::potential, k * area * kWidth / (kLength * kLength), k * area * area / (2 * kLength * kLength)},
       };
       for (const auto& w : wanted) {
@@ -69,10 +70,11 @@ TEST_CASE("a block that stays on its floor swings with the period of its contact
   // force that balances the mean overlap.
   const double k = 1e8;
   const double depth = 1e-3;
-  for (const ContactLaw law : {ContactLaw::mean_depth, ContactLaw::area, ContactLaw::potential}) {
-    const double stiffness = law == ContactLaw::mean_depth ? k
-                             : law == ContactLaw::area     ? k * kWidth
-                                                           : k * kWidth * kWidth / (kLength * kLength);
+  for (const ContactLaw law :
+       {ContactLaw::mean_depth, ContactLaw::area, ContactLaw::potential, ContactLaw::foundation}) {
+    const double stiffness = law == ContactLaw::mean_depth        ? k
+                             : common::stiffness_is_per_area(law) ? k * kWidth
+                                                                  : k * kWidth * kWidth / (kLength * kLength);
     common::Scene scene = scene_of(law, k);
     scene.time_step.safety = 0.05;
     dem::Engine engine(scene, pressed(1.5 * depth, 0));

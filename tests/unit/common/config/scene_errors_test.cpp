@@ -17,7 +17,7 @@ std::string error_of(const std::string& text, const Overrides& overrides = {}) {
 
 const std::string kSections =
     "seed, effects, material, assembly, contact, damping, time_step, preparation, servo, shear, breakage, output";
-const std::string kStiffnessUnit = " [N/m for mean_depth and potential, N/m^2 for area]";
+const std::string kStiffnessUnit = " [N/m for mean_depth and potential, N/m^2 for area and foundation]";
 
 struct Case {
   std::string text;
@@ -71,11 +71,13 @@ TEST_CASE("A value of the wrong type is reported with what was found and expecte
       {"material: {plane_stress: \"true\"}\n",
        "s.yaml:1:26: material.plane_stress: found the quoted text \"true\", expected true or false"},
       {"contact: {law: meandepth}\n",
-       "s.yaml:1:16: contact.law: found \"meandepth\", expected one of mean_depth, area, potential; did you mean "
+       "s.yaml:1:16: contact.law: found \"meandepth\", expected one of mean_depth, area, potential, foundation; did "
+       "you mean "
        "\"mean_depth\"?"},
-      {"contact: {law: 3}\n", "s.yaml:1:16: contact.law: found 3, expected one of mean_depth, area, potential"},
+      {"contact: {law: 3}\n",
+       "s.yaml:1:16: contact.law: found 3, expected one of mean_depth, area, potential, foundation"},
       {"contact: {law: [area]}\n",
-       "s.yaml:1:16: contact.law: found a list, expected one of mean_depth, area, potential"},
+       "s.yaml:1:16: contact.law: found a list, expected one of mean_depth, area, potential, foundation"},
       {"preparation: {from: [1]}\n", "s.yaml:1:21: preparation.from: found a list, expected a file name"},
       {"output: {durability: sometimes}\n",
        "s.yaml:1:22: output.durability: found \"sometimes\", expected none, every or an integer >= 1"},
@@ -219,7 +221,8 @@ TEST_CASE("Overrides are validated like the file and name themselves") {
         "which has no keys below it");
   CHECK(error("contact..friction=1").find("--set contact..friction=1: unknown key \"\" in contact; ") == 0);
   CHECK(error("contact={law: aera}") ==
-        "--set contact={law: aera}: contact.law: found \"aera\", expected one of mean_depth, area, potential; did you "
+        "--set contact={law: aera}: contact.law: found \"aera\", expected one of mean_depth, area, potential, "
+        "foundation; did you "
         "mean \"area\"?");
   CHECK(error("contact={friction: 1, friction: 2}") ==
         "--set contact={friction: 1, friction: 2}: duplicate key \"friction\" in contact, first given at --set "
