@@ -56,6 +56,7 @@ struct Box {
       high = high.cwiseMax(Vec2(outline.x[i], outline.y[i]));
     }
   }
+  double reach() const { return std::max(-low.minCoeff(), high.maxCoeff()); }
   bool contains(const Vec2& p, double margin) const {
     return (p.array() >= low.array() - margin).all() && (p.array() <= high.array() + margin).all();
   }
@@ -134,14 +135,13 @@ std::string complaint(const Overlap& found, const Sample& sample, const Referenc
   if (found.width < root * (1 - 1e-14)) return "width below sqrt(area)";
   if (found.crossings < 0 || found.crossings % 2 != 0) return "crossings";
   const double size = reference.diameter;
-  double margin = 1e-15 * size;
-  const auto outside = [&](const Vec2& p) {
-    return !Box(sample.pair.a).contains(p, margin) || !Box(sample.pair.b).contains(p, margin);
-  };
+  const Box box_a(sample.pair.a), box_b(sample.pair.b);
+  double margin = 1e-15 * size + 0x1p-52 * std::max(box_a.reach(), box_b.reach());
+  const auto outside = [&](const Vec2& p) { return !box_a.contains(p, margin) || !box_b.contains(p, margin); };
   // An area that no double tells from a gap is somewhere along the edges that graze each other.
   const bool rounding = found.area < 1e-15 * size * size;
   if (rounding && (outside(found.centroid) || outside(found.chord_midpoint))) {
-    margin = kCrossing * size * (1 + grazing(sample.pair, size));
+    margin += kCrossing * size * grazing(sample.pair, size);
   }
   if (outside(found.centroid)) return "centroid";
   if (outside(found.chord_midpoint)) return "chord midpoint";
