@@ -126,8 +126,11 @@ void Engine::step(const StrainRate& rate) {
   }
 }
 
-void Engine::scale_positions(double factor) {
-  for (Vec2& x : state_.particles.position) x *= factor;
+void Engine::scale_positions(const Vec2& factor) {
+  Particles& p = state_.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.boundary[i]) p.position[i] = p.position[i].cwiseProduct(factor);
+  }
 }
 
 Health Engine::health() const {

@@ -40,8 +40,9 @@ class Engine {
   /// One time step with the boundary moving at `rate`. Afterwards contacts and forces belong to the new positions.
   void step(const StrainRate& rate);
 
-  /// Multiplies all positions by `factor` (affine compaction); the next step evaluates the contacts.
-  void scale_positions(double factor);
+  /// Multiplies the positions of the free particles by `factor`, component by component (affine compression, besides
+  /// their own motion); the next step evaluates the contacts.
+  void scale_positions(const Vec2& factor);
 
   Health health() const;
   const ContactConstants& constants() const { return constants_; }

@@ -19,7 +19,7 @@ constexpr double kPressureHeld = 0.001;
 constexpr int kRingInterval = 50;
 constexpr int kServoInterval = 10;
 constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves the friction
-constexpr double kFirstTry = 0.003;        // above the target: a sample gets denser while it comes to rest
+constexpr double kFirstTry = 0.0005;       // above the target: a sample gets hardly denser while it comes to rest
 constexpr double kRingFixed = 0.012;       // above the target: the ring stays as it is; one particle is 0.005 of 300
 constexpr double kLowestFriction = 0.002;
 constexpr double kSettled = 0.003;    // unbalanced force at which a frictionless sample gets no denser
@@ -89,10 +89,12 @@ void Preparation::step() {
     }
     control_.steps_to_ring = kRingInterval - 1;
   }
-  if (control_.phase == Phase::compaction) {
-    engine_.scale_positions(1 - scene_.preparation.compaction_rate * engine_.clock().time_step);
-  }
-  engine_.step({control_.servo_x.rate, control_.servo_y.rate});
+  // The particles inside are carried along: a boundary that pushed alone would densify the layer next to it first, and
+  // the arch of that layer would shield the middle from a tenth of the pressure.
+  const StrainRate rate{control_.servo_x.rate, control_.servo_y.rate};
+  const double compaction = control_.phase == Phase::compaction ? scene_.preparation.compaction_rate : 0;
+  engine_.scale_positions(Vec2::Ones() - Vec2(rate.xx + compaction, rate.yy + compaction) * engine_.clock().time_step);
+  engine_.step(rate);
   if (control_.steps_to_servo-- <= 0) {
     steer();
     control_.steps_to_servo = kServoInterval - 1;
@@ -136,13 +138,12 @@ void Preparation::steer() {
       enter(Phase::densification);
     }
   } else if (control_.phase == Phase::densification) {
-    // The servo must follow: a sample that lost its pressure would lose its friction for nothing.
-    if (error > kPressureFollowed && !late) return;
     const bool frictionless = state.friction < kLowestFriction;
-    const bool settled = frictionless && engine_.health().unbalanced_force < kSettled;
+    const bool settled = frictionless && engine_.health().unbalanced_force < kSettled && error < kPressureFollowed;
     if (void_ratio(state, scene_.preparation.definition) <= control_.hold_below || settled || late) {
       enter(Phase::hold);
-    } else if (!frictionless) {
+    } else if (!frictionless && error < kPressureFollowed) {
+      // Only while the servo follows: a sample that lost its pressure would lose its friction for nothing.
       engine_.edit().friction *= 1 - 0.6931471805599453 * elapsed / kFrictionHalving;
       control_.low_friction = state.friction;
     }

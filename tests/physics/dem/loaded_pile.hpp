@@ -35,7 +35,7 @@ inline dem::Engine loaded_pile(const common::Scene& scene) {
   dem::Engine engine(scene, state);
   dem::outline_ring(engine);
   for (int k = 0; k < 100000 && engine.state().contacts.size() < 40; ++k) {
-    engine.scale_positions(1 - 1e-4);
+    engine.scale_positions(common::Vec2::Constant(1 - 1e-4));
     engine.step({});
   }
   dem::renew_ring(engine);

@@ -126,7 +126,7 @@ TEST_CASE("in a sheared pile every contact respects Coulomb's cap, some slide, a
     dem::Engine engine(scene, loose(60, 5, 0.5));
     dem::outline_ring(engine);
     for (int k = 0; k < 100000 && engine.state().contacts.size() < 40; ++k) {
-      engine.scale_positions(1 - 1e-4);
+      engine.scale_positions(common::Vec2::Constant(1 - 1e-4));
       engine.step({});
     }
     dem::renew_ring(engine);

@@ -33,7 +33,7 @@ dem::Engine pile(const common::Scene& scene) {
   state.friction = 0.5;
   dem::Engine engine(scene, state);
   for (int k = 0; k < 100000 && engine.state().contacts.size() < 40; ++k) {
-    engine.scale_positions(1 - 1e-4);
+    engine.scale_positions(common::Vec2::Constant(1 - 1e-4));
     engine.step({});
   }
   dem::renew_ring(engine);
