@@ -57,7 +57,7 @@ inline bool stiffness_is_per_area(ContactLaw law) {
 }
 
 struct ContactOptions {
-  ContactLaw law = ContactLaw::area;
+  ContactLaw law = ContactLaw::foundation;
   double normal_stiffness = 5e9;               ///< N/m for mean_depth and potential, N/m^2 for area and foundation
   std::optional<double> tangential_stiffness;  ///< [N/m]; absent (auto): see contact/laws
   double friction = 0.5;                       ///< Coulomb coefficient in shear [-]

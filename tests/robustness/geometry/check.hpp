@@ -62,7 +62,8 @@ double area_tolerance(double exact, double diameter);
 ///  - area against the oracle: nothing known, with the sample's feature, with the feature just learned, with a feature
 ///    made up, with one learned at another place, and with a and b exchanged;
 ///  - finite numbers, unit normal, width >= sqrt(area), an even number of crossings, nothing set without an overlap;
-///  - centroid and chord midpoint inside both bounding boxes;
+///  - centroid and chord midpoint inside both bounding boxes; an area below 1e-15 D^2 may be out by rounding over the
+///    sine of the angle at which edges graze each other;
 ///  - width * normal against the oracle's chord, -dA/d(position of b), where edges that meet do not do so at a grazing
 ///    angle: within rounding over the sine of that angle.
 void check(std::span<Sample> samples, Kernel kernel, Tally& tally);

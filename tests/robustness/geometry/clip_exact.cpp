@@ -3,6 +3,7 @@
 #include <gmpxx.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace differential {
@@ -25,51 +26,56 @@ mpq_class turn(const Point& o, const Point& p, const Point& q) {
   return (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x);
 }
 
-std::vector<Point> points_of(const Outline& outline) {
-  std::vector<Point> points;
-  for (int i = 0; i < outline.size; ++i) points.push_back({outline.x[i], outline.y[i]});
-  return points;
+Point point(const Outline& outline, int i) {
+  return {outline.x[i], outline.y[i]};
 }
 
-/// heights[j][i] of vertex i above edge j, times the edge's length.
-std::vector<std::vector<mpq_class>> heights_above(const std::vector<Point>& window, const std::vector<Point>& subject) {
-  std::vector<std::vector<mpq_class>> heights;
-  for (std::size_t j = 0; j < window.size(); ++j) {
-    auto& row = heights.emplace_back();
-    for (const Point& p : subject) row.push_back(turn(window[j], window[(j + 1) % window.size()], p));
-  }
-  return heights;
-}
+using Signs = std::array<std::array<signed char, common::kMaxParticleVertices>, common::kMaxParticleVertices>;
 
-void add_vertices_inside(const std::vector<Point>& subject, const std::vector<std::vector<mpq_class>>& heights,
-                         std::vector<Point>& found) {
-  for (std::size_t i = 0; i < subject.size(); ++i) {
-    if (std::all_of(heights.begin(), heights.end(), [i](const auto& row) { return sgn(row[i]) >= 0; })) {
-      found.push_back(subject[i]);
+/// signs[j][i]: side of edge j of the window on which vertex i lies.
+void sides_of(const Outline& window, const Outline& subject, Signs& signs) {
+  for (int j = 0; j < window.size; ++j) {
+    const int end = window.next(j);
+    for (int i = 0; i < subject.size; ++i) {
+      signs[j][i] = static_cast<signed char>(
+          orientation(window.x[j], window.y[j], window.x[end], window.y[end], subject.x[i], subject.y[i]));
     }
   }
+}
+
+void add_vertices_inside(const Outline& subject, const Outline& window, const Signs& signs, std::vector<Point>& found) {
+  for (int i = 0; i < subject.size; ++i) {
+    if (std::all_of(signs.begin(), signs.begin() + window.size, [i](const auto& row) { return row[i] >= 0; })) {
+      found.push_back(point(subject, i));
+    }
+  }
+}
+
+/// Where edge i of a crosses edge j of b.
+Point crossing(const Outline& a, int i, const Outline& b, int j) {
+  const Point p = point(a, i), q = point(a, a.next(i)), v = point(b, j), w = point(b, b.next(j));
+  const mpq_class height = turn(v, w, p);
+  const mpq_class t = height / (height - turn(v, w, q));
+  return {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)};
 }
 
 }  // namespace
 
 double exact_area(const OutlinePair& pair) {
-  const std::vector<Point> a = points_of(pair.a);
-  const std::vector<Point> b = points_of(pair.b);
-  const auto above_b = heights_above(b, a);
-  const auto above_a = heights_above(a, b);
+  const auto& [a, b] = pair;
+  Signs above_b, above_a;
+  sides_of(b, a, above_b);
+  sides_of(a, b, above_a);
 
   std::vector<Point> found;
-  add_vertices_inside(a, above_b, found);
-  add_vertices_inside(b, above_a, found);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const std::size_t i_end = (i + 1) % a.size();
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t j_end = (j + 1) % b.size();
+  add_vertices_inside(a, b, above_b, found);
+  add_vertices_inside(b, a, above_a, found);
+  for (int i = 0; i < a.size; ++i) {
+    for (int j = 0; j < b.size; ++j) {
       // Touching edges meet at vertices, which are found already, or run along each other between vertices.
-      if (sgn(above_b[j][i]) * sgn(above_b[j][i_end]) >= 0 || sgn(above_a[i][j]) * sgn(above_a[i][j_end]) >= 0)
-        continue;
-      const mpq_class t = above_b[j][i] / (above_b[j][i] - above_b[j][i_end]);
-      found.push_back({a[i].x + t * (a[i_end].x - a[i].x), a[i].y + t * (a[i_end].y - a[i].y)});
+      if (above_b[j][i] * above_b[j][a.next(i)] < 0 && above_a[i][j] * above_a[i][b.next(j)] < 0) {
+        found.push_back(crossing(a, i, b, j));
+      }
     }
   }
   std::sort(found.begin(), found.end(), before);

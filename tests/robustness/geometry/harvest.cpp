@@ -13,7 +13,6 @@ namespace {
 
 using common::Vec2;
 
-constexpr double kSkin = 0.06;  ///< of the scene's smallest diameter, as the engine has it
 constexpr std::size_t kBlock = 256;
 
 void write_outline(const common::Particles& particles, std::size_t i, const Vec2& origin, Outline& outline) {
@@ -52,7 +51,7 @@ void for_each_candidate(const common::Particles& p, double skin, const Visit& vi
 template <class Examine>
 void replay(dem::Engine& engine, const common::Scene& scene, const HarvestOptions& options, const Examine& examine) {
   const dem::StrainRate rate{-0.5 * scene.shear.strain_rate, scene.shear.strain_rate};
-  const common::Particles& particles = engine.state().particles;
+  const common::Particles& particles = engine.clock().particles;
   std::unordered_map<std::uint64_t, common::PairFeature> features;  // never iterated
   const auto feature_of = [&](std::size_t a, std::size_t b) -> common::PairFeature& {
     return features[static_cast<std::uint64_t>(a) << 32 | b];
@@ -69,15 +68,17 @@ void replay(dem::Engine& engine, const common::Scene& scene, const HarvestOption
   for (int step = 0; step <= options.steps && going; ++step) {
     if (step > 0) engine.step(rate);
     if (step % options.every != 0) continue;
-    for_each_candidate(particles, kSkin * scene.assembly.diameter_min, [&](std::size_t a, std::size_t b) {
-      Sample& sample = block.emplace_back();
-      write_outline(particles, a, particles.position[a], sample.pair.a);
-      write_outline(particles, b, particles.position[a], sample.pair.b);
-      sample.feature = feature_of(a, b);
-      sample.key = {0, step, particles.id[a], particles.id[b]};
-      indices.emplace_back(a, b);
-      if (block.size() == kBlock) flush();
-    });
+    for_each_candidate(particles, scene.neighbours.skin * scene.assembly.diameter_min,
+                       [&](std::size_t a, std::size_t b) {
+                         Sample& sample = block.emplace_back();
+                         const Vec2 origin = options.world ? Vec2(Vec2::Zero()) : particles.position[a];
+                         write_outline(particles, a, origin, sample.pair.a);
+                         write_outline(particles, b, origin, sample.pair.b);
+                         sample.feature = feature_of(a, b);
+                         sample.key = {0, step, particles.id[a], particles.id[b]};
+                         indices.emplace_back(a, b);
+                         if (block.size() == kBlock) flush();
+                       });
     flush();
   }
 }

@@ -10,14 +10,15 @@
 namespace differential {
 
 struct HarvestOptions {
-  std::int64_t pairs = 0;         ///< stop when so many were checked
-  int steps = 400;                ///< most steps from a frame
-  int every = 10;                 ///< check at each so many steps
+  std::int64_t pairs = 0;  ///< stop when so many were checked
+  int steps = 400;         ///< most steps from a frame
+  int every = 10;          ///< check at each so many steps
+  bool world = false;      ///< coordinates as the engine has them, not relative to the first particle of the pair
   std::int64_t exact_stride = 0;  ///< each so many pairs in exact arithmetic; 0: none
 };
 
 /// Steps the engine with the boundary moving as in shear and checks all pairs whose circles are within the engine's
-/// skin, in coordinates relative to the first particle of the pair. `source` becomes the first number of the case keys.
+/// skin. `source` becomes the first number of the case keys.
 void harvest(dem::Engine& engine, const common::Scene& scene, std::int64_t source, const HarvestOptions& options,
              Kernel kernel, Tally& tally);
 

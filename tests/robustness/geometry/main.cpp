@@ -222,6 +222,7 @@ int main(int argc, char** argv) {
   app.add_option("--every", arguments.harvest.every, "steps between two checks of all pairs")
       ->default_val(10)
       ->check(CLI::PositiveNumber);
+  app.add_flag("--world", arguments.harvest.world, "harvest in world coordinates, as the engine calls the kernel");
   app.add_option("--exact", arguments.exact, "pairs to be checked in exact arithmetic whatever the first oracle says");
   app.add_option("--case", arguments.case_name, "one pair: FAMILY:SEED or harvest:FRAME:STEP:A:B");
   app.add_option("--json", arguments.json, "file for the table");

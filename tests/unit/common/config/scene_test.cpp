@@ -93,7 +93,7 @@ TEST_CASE("Keys that a scene does not give keep the defaults of the structs") {
   CHECK_FALSE(scene.effects.friction);
   CHECK_FALSE(scene.effects.breakage);
   CHECK(scene.material.sigma_ci == 150e6);
-  CHECK(scene.contact.law == ContactLaw::area);
+  CHECK(scene.contact.law == ContactLaw::foundation);
   CHECK_FALSE(scene.contact.tangential_stiffness);
   CHECK(scene.preparation.from.empty());
   Scene seeded = defaults;
@@ -267,7 +267,7 @@ TEST_CASE("Of the effects, xfem's configuration hash covers breakage alone") {
 
 TEST_CASE("The configuration hash does not depend on how or where the scene is written") {
   const scratch::Folder folder;
-  const Scene one = read_scene(folder.write("a.yaml", "contact: {friction: 0.50, law: area}\nseed: 1\n"));
+  const Scene one = read_scene(folder.write("a.yaml", "contact: {friction: 0.50, law: foundation}\nseed: 1\n"));
   const Scene two = read_scene(folder.write("b.yaml", "# other order\nseed: 1\ncontact:\n  friction: 5e-1\n"));
   CHECK(config_hash(one, UsedBy::dem) == config_hash(two, UsedBy::dem));
   CHECK(config_hash(one, UsedBy::xfem) == config_hash(two, UsedBy::xfem));
