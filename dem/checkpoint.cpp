@@ -13,6 +13,7 @@ struct EnergyEntry {
   const char* name;
   const char* description;
   double EnergySums::*member;
+  bool common::Effects::*effect = nullptr;  // that it belongs to besides the ledger
 };
 
 constexpr EnergyEntry kEnergies[] = {
@@ -21,8 +22,13 @@ constexpr EnergyEntry kEnergies[] = {
     {"energy_damping", "dissipated by damping since the start of shear", &EnergySums::damping},
     {"energy_contact_law", "path-dependent work of the normal law since the start of shear",
      &EnergySums::contact_law_work},
-    {"energy_released", "elastic energy that vanished at splits since the start of shear",
-     &EnergySums::released_by_breakage},
+    {"energy_contact_damping", "dissipated by contact damping since the start of shear", &EnergySums::contact_damping,
+     &common::Effects::contact_damping},
+    {"energy_rolling", "dissipated by rolling resistance since the start of shear", &EnergySums::rolling,
+     &common::Effects::rolling_resistance},
+    {"energy_gravity", "work of the weights since the start of shear", &EnergySums::gravity_work,
+     &common::Effects::gravity},
+    {"energy_released", "energy that vanished at splits since the start of shear", &EnergySums::released_by_breakage},
 };
 
 }  // namespace
@@ -64,6 +70,7 @@ std::vector<Contact> contacts_in(const common::Contacts& contacts, const Particl
     if (i < contacts.overlap_area.size()) c.overlap_area = contacts.overlap_area[i];
     if (i < contacts.overlap_width.size()) c.overlap_width = contacts.overlap_width[i];
     if (contacts.shear_displacement) c.shear_displacement = (*contacts.shear_displacement)[i];
+    if (contacts.rolling_moment) c.rolling_moment = (*contacts.rolling_moment)[i];
   }
   return result;
 }
@@ -80,6 +87,7 @@ common::Frame to_frame(const State& state, const common::Scene& scene, common::S
 
   common::Contacts& contacts = frame.contacts;
   if (scene.effects.friction) contacts.shear_displacement.emplace();
+  if (scene.effects.rolling_resistance) contacts.rolling_moment.emplace();
   for (const Contact& c : state.contacts) {
     contacts.a.push_back(state.particles.id[c.a]);
     contacts.b.push_back(state.particles.id[c.b]);
@@ -91,12 +99,14 @@ common::Frame to_frame(const State& state, const common::Scene& scene, common::S
     contacts.overlap_area.push_back(c.overlap_area);
     contacts.overlap_width.push_back(c.overlap_width);
     if (contacts.shear_displacement) contacts.shear_displacement->push_back(c.shear_displacement);
+    if (contacts.rolling_moment) contacts.rolling_moment->push_back(c.rolling_moment);
   }
   for (const std::int32_t i : state.ring) frame.ring.push_back(state.particles.id[i]);
 
   frame.checkpoint.push_back({"time_step", "s", "dt", {state.time_step}});
   if (scene.effects.energy_ledger) {
     for (const EnergyEntry& e : kEnergies) {
+      if (e.effect && !(scene.effects.*e.effect)) continue;
       frame.checkpoint.push_back({e.name, "J", e.description, {state.energy.*e.member}});
     }
   }
@@ -113,12 +123,16 @@ State to_state(const common::Frame& frame) {
   state.time_step = checkpoint_value(frame, "time_step");
   state.friction = frame.friction;
   state.next_id = frame.next_id;
-  // A scene without the ledger leaves none of them.
+  // A scene without the ledger leaves none of them; one without an effect leaves out that effect's.
   const bool ledger = std::any_of(frame.checkpoint.begin(), frame.checkpoint.end(), [](const common::Column& c) {
     return c.name.starts_with("energy_") && c.name != "energy_at_start";
   });
   if (ledger) {
-    for (const EnergyEntry& e : kEnergies) state.energy.*e.member = checkpoint_value(frame, e.name);
+    for (const EnergyEntry& e : kEnergies) {
+      const bool there = std::any_of(frame.checkpoint.begin(), frame.checkpoint.end(),
+                                     [&](const common::Column& c) { return c.name == e.name; });
+      if (there || !e.effect) state.energy.*e.member = checkpoint_value(frame, e.name);
+    }
   }
   return state;
 }

@@ -7,7 +7,10 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "dem/effects/contact_damping.hpp"
+#include "dem/effects/gravity.hpp"
 #include "dem/effects/local_damping.hpp"
+#include "dem/effects/mass_scaling.hpp"
 
 namespace dem {
 
@@ -15,6 +18,8 @@ Engine::Engine(const common::Scene& scene, State state, int threads)
     : effects_(scene.effects),
       damping_(scene.damping.local),
       safety_(scene.time_step.safety),
+      gravity_(scene.gravity.acceleration),
+      mass_share_(scene.mass_scaling.smallest_mass),
       team_(std::make_unique<Team>(threads)),
       constants_(contact_constants(scene)),
       kernel_(select_contact_kernel(scene.contact.law, scene.effects)),
@@ -38,9 +43,10 @@ State& Engine::edit() {
 void Engine::restart() {
   state();
   check_outlines();
+  if (effects_.mass_scaling) least_mass_ = least_inertial_mass(state_.particles, mass_share_);
   state_.time_step = stable_time_step();
   outlines_.reset(state_.particles);
-  inverse_.reset(state_.particles);
+  inverse_.reset(state_.particles, least_mass_);
   forces_.force.resize(state_.particles.size());
   forces_.moment.resize(state_.particles.size());
   team_->for_blocks(state_.particles.size(), [&](std::size_t, std::size_t first, std::size_t last) {
@@ -73,11 +79,13 @@ double Engine::stable_time_step() const {
     for (std::size_t k = 0; k < outline.size(); ++k) {
       edge = std::max(edge, (outline[(k + 1) % outline.size()] - outline[k]).norm());
     }
-    mass = std::min(mass, p.mass[i]);
+    mass = std::min(mass, std::max(p.mass[i], least_mass_));
   }
   double stiffness = kernel_.stiffness_bound(edge, constants_);
   if (effects_.friction) stiffness = std::max(stiffness, constants_.tangential_stiffness);
-  return safety_ * std::sqrt(mass / stiffness);
+  if (effects_.rolling_resistance) stiffness = std::max(stiffness, 2 * constants_.rolling_stiffness);
+  const double factor = effects_.contact_damping ? damped_step_factor(constants_.damping) : 1;
+  return factor * safety_ * std::sqrt(mass / stiffness);
 }
 
 void Engine::rebuild() {
@@ -88,12 +96,13 @@ void Engine::rebuild() {
 
 ContactSums Engine::evaluate(double dt) {
   stored_ = false;
-  const ContactScene scene{state_.particles, outlines_, constants_, state_.friction, dt};
+  const ContactScene scene{state_.particles, outlines_, inverse_.mass, constants_, state_.friction, dt};
   const ContactSums sums = team_->sum_blocks(slots_.size(), contact_sums_, [&](std::size_t first, std::size_t last) {
     return kernel_.evaluate(scene, slots_, first, last);
   });
   team_->for_blocks(state_.particles.size(), [&](std::size_t, std::size_t first, std::size_t last) {
     slots_of_.gather(slots_.load, first, last, forces_);
+    if (effects_.gravity) add_weights(state_.particles, gravity_, first, last, forces_);
   });
   return sums;
 }
@@ -105,10 +114,13 @@ void Engine::step(const StrainRate& rate) {
   const MotionSums motion =
       team_->sum_blocks(p.size(), motion_sums_, [&](std::size_t first, std::size_t last) -> MotionSums {
         MotionSums sums;
+        const bool weighs = effects_.gravity && ledger;
+        if (weighs) sums.gravity_work = 0.5 * dt * power_of_weights(p, gravity_, first, last);
         if (effects_.local_damping) {
           sums.damping = apply_local_damping(p, inverse_, forces_, damping_, dt, ledger, first, last);
         }
         sums.boundary_work = advance(p, forces_, inverse_, rate, dt, ledger, first, last);
+        if (weighs) sums.gravity_work += 0.5 * dt * power_of_weights(p, gravity_, first, last);
         sums.outdated = neighbours_.outdated(p, first, last);
         outlines_.place(p, first, last);
         return sums;
@@ -121,7 +133,10 @@ void Engine::step(const StrainRate& rate) {
   if (ledger) {
     state_.energy.boundary_work += motion.boundary_work;
     state_.energy.damping += motion.damping;
+    state_.energy.gravity_work += motion.gravity_work;
     state_.energy.friction += now_.friction;
+    state_.energy.contact_damping += now_.contact_damping;
+    state_.energy.rolling += now_.rolling;
     state_.energy.contact_law_work += now_.contact_law_work;
   }
 }

@@ -47,7 +47,11 @@ class Engine {
   Health health() const;
   const ContactConstants& constants() const { return constants_; }
   const std::string& kernel_name() const { return kernel_.name; }
-  /// Resultant contact forces at the present positions, before damping.
+  /// Kinetic energy of the free particles [J], of the masses that they move with.
+  double kinetic_energy() const { return dem::kinetic_energy(state_.particles, least_mass_); }
+  /// Smallest mass that a particle moves with [kg]; 0 without mass scaling.
+  double least_mass() const { return least_mass_; }
+  /// Resultant forces of contacts and gravity at the present positions, before damping.
   const BodyForces& forces() const { return forces_; }
   /// Contacts in force.
   std::int64_t contacts() const { return now_.contacts; }
@@ -56,12 +60,13 @@ class Engine {
  private:
   // What the motion of one block of particles sums up.
   struct MotionSums {
-    double boundary_work = 0, damping = 0;
+    double boundary_work = 0, damping = 0, gravity_work = 0;
     bool outdated = false;
 
     MotionSums& operator+=(const MotionSums& o) {
       boundary_work += o.boundary_work;
       damping += o.damping;
+      gravity_work += o.gravity_work;
       outdated |= o.outdated;
       return *this;
     }
@@ -75,6 +80,9 @@ class Engine {
   common::Effects effects_;
   double damping_;
   double safety_;
+  Vec2 gravity_;
+  double mass_share_;
+  double least_mass_ = 0;
   std::unique_ptr<Team> team_;  // where it is stays, while an engine may move
   ContactConstants constants_;
   ContactKernel kernel_;

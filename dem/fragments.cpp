@@ -174,6 +174,7 @@ SplitReport apply_split(State& state, const common::Split& split, double density
         heir.b = std::max(a, b);
         // The force on b along (-n_y, n_x) is the same number from either side.
         if (a > b) heir.normal = -heir.normal;
+        if (inherited) heir.rolling_moment = 0;  // a fragment has not rolled yet
         contacts.push_back(heir);
         if (inherited) report.inherited.push_back({heir.a, heir.b, group, contact.shear_displacement});
       }

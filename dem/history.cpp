@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/error.hpp"
+#include "dem/effects/mass_scaling.hpp"
 #include "dem/measures.hpp"
 #include "dem/stages/prepare.hpp"
 
@@ -54,18 +56,39 @@ constexpr Definition kLedger[] = {
     {"friction_dissipation", "J", "since the start of shear"},
     {"damping_dissipation", "J", "since the start of shear"},
     {"contact_law_work", "J", "path-dependent work of the normal law since the start of shear"},
-    {"released_by_breakage", "J", "elastic energy that vanished at splits since the start of shear"},
-    {"energy_residual", "J", "boundary work less all other entries"},
+    {"released_by_breakage", "J", "energy that vanished at splits since the start of shear"},
+    {"energy_residual", "J", "boundary work and gravity work less all other entries"},
+};
+// An effect's entry of the ledger.
+struct LedgerEntry {
+  bool common::Effects::*effect;
+  Definition definition;
+  double EnergySums::*member;
+};
+constexpr LedgerEntry kEffectEntries[] = {
+    {&common::Effects::contact_damping,
+     {"contact_damping_dissipation", "J", "since the start of shear"},
+     &EnergySums::contact_damping},
+    {&common::Effects::rolling_resistance,
+     {"rolling_dissipation", "J", "since the start of shear"},
+     &EnergySums::rolling},
+    {&common::Effects::gravity,
+     {"gravity_work", "J", "work of the weights since the start of shear"},
+     &EnergySums::gravity_work},
+};
+constexpr Definition kMassScaling[] = {
+    {"scaled_particles", "-", "particles that move with a raised mass"},
+    {"added_mass", "-", "raised masses / true masses of all particles - 1"},
 };
 
 }  // namespace
 
 double energy_residual(const Engine& engine, const Control& control) {
   const State& state = engine.state();
-  const double stored = elastic_energy(state, engine.constants()) + kinetic_energy(state.particles);
+  const double stored = elastic_energy(state, engine.constants()) + engine.kinetic_energy();
   const EnergySums& e = state.energy;
-  return e.boundary_work - (stored - control.energy_at_start) - e.friction - e.damping - e.contact_law_work -
-         e.released_by_breakage;
+  return e.boundary_work + e.gravity_work - (stored - control.energy_at_start) - e.friction - e.damping -
+         e.contact_damping - e.rolling - e.contact_law_work - e.released_by_breakage;
 }
 
 void require_sound(const common::Scene& scene, const std::vector<common::Column>& history) {
@@ -95,7 +118,8 @@ void require_sound(const common::Scene& scene, const std::vector<common::Column>
     }
   }
   if (scene.effects.energy_ledger) {
-    const double scale = std::abs(column("boundary_work").back()) + column("elastic_energy").back();
+    double scale = std::abs(column("boundary_work").back()) + column("elastic_energy").back();
+    if (scene.effects.gravity) scale += std::abs(column("gravity_work").back());
     const double residual = column("energy_residual").back();
     if (std::abs(residual) > kResidual * scale) {
       throw stop(
@@ -110,7 +134,13 @@ History::History(const common::Scene& scene) : scene_(scene) {
   };
   add(kAlways);
   if (scene.effects.friction) add(kFriction);
-  if (scene.effects.energy_ledger) add(kLedger);
+  if (scene.effects.energy_ledger) {
+    add(kLedger);
+    for (const LedgerEntry& entry : kEffectEntries) {
+      if (scene.effects.*entry.effect) add(std::span(&entry.definition, 1));
+    }
+  }
+  if (scene.effects.mass_scaling) add(kMassScaling);
 }
 
 void History::record(const Engine& engine, const Control& control) {
@@ -159,9 +189,16 @@ void History::record(const Engine& engine, const Control& control) {
   if (scene_.effects.friction) row.push_back(health.sliding_fraction);
   if (scene_.effects.energy_ledger) {
     row.insert(row.end(),
-               {kinetic_energy(state.particles), elastic_energy(state, engine.constants()), state.energy.boundary_work,
+               {engine.kinetic_energy(), elastic_energy(state, engine.constants()), state.energy.boundary_work,
                 state.energy.friction, state.energy.damping, state.energy.contact_law_work,
                 state.energy.released_by_breakage, energy_residual(engine, control)});
+    for (const LedgerEntry& entry : kEffectEntries) {
+      if (scene_.effects.*entry.effect) row.push_back(state.energy.*entry.member);
+    }
+  }
+  if (scene_.effects.mass_scaling) {
+    const MassScaling scaling = mass_scaling(state.particles, engine.least_mass());
+    row.insert(row.end(), {scaling.particles, scaling.added_mass});
   }
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (!std::isfinite(row[i])) {

@@ -1,13 +1,16 @@
 #include "dem/motion.hpp"
 
+#include <algorithm>
+
 namespace dem {
 
-void InverseInertia::reset(const Particles& particles) {
+void InverseInertia::reset(const Particles& particles, double least_mass) {
   mass.resize(particles.size());
   moment.resize(particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    mass[i] = 1 / particles.mass[i];
-    moment[i] = 1 / particles.inertia[i];
+    const double raise = std::max(1.0, least_mass / particles.mass[i]);
+    mass[i] = 1 / (raise * particles.mass[i]);
+    moment[i] = 1 / (raise * particles.inertia[i]);
   }
 }
 
@@ -35,12 +38,13 @@ double advance(Particles& p, const BodyForces& forces, const InverseInertia& inv
   return work;
 }
 
-double kinetic_energy(const Particles& particles) {
+double kinetic_energy(const Particles& particles, double least_mass) {
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.boundary[i]) continue;
-    sum += 0.5 * particles.mass[i] * particles.velocity[i].squaredNorm() +
-           0.5 * particles.inertia[i] * particles.angular_velocity[i] * particles.angular_velocity[i];
+    const double raise = std::max(1.0, least_mass / particles.mass[i]);
+    sum += raise * (0.5 * particles.mass[i] * particles.velocity[i].squaredNorm() +
+                    0.5 * particles.inertia[i] * particles.angular_velocity[i] * particles.angular_velocity[i]);
   }
   return sum;
 }

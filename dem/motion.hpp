@@ -16,7 +16,8 @@ struct InverseInertia {
   std::vector<double> mass;    ///< [1/kg]
   std::vector<double> moment;  ///< [1/(kg m^2)]
 
-  void reset(const Particles& particles);
+  /// A particle lighter than `least_mass` [kg] moves as if it had that mass (effects/mass_scaling.hpp).
+  void reset(const Particles& particles, double least_mass);
 };
 
 /// Advances particles first..last-1 by dt [s]: free ones by their forces, boundary particles by the strain rate
@@ -24,7 +25,7 @@ struct InverseInertia {
 double advance(Particles& particles, const BodyForces& forces, const InverseInertia& inverse, const StrainRate& rate,
                double dt, bool ledger, std::size_t first, std::size_t last);
 
-/// Kinetic energy of the free particles [J], at the instant of the velocities.
-double kinetic_energy(const Particles& particles);
+/// Kinetic energy of the free particles [J], at the instant of the velocities, of the masses that they move with.
+double kinetic_energy(const Particles& particles, double least_mass = 0);
 
 }  // namespace dem

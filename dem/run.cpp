@@ -251,13 +251,15 @@ class Run {
                                           split.frame_hash, frame_hash));
     }
     if (split.broken.parent.empty()) return;
-    const double before = elastic_energy(engine_->state(), engine_->constants());
+    const auto energy = [&] {
+      return elastic_energy(engine_->state(), engine_->constants()) + engine_->kinetic_energy();
+    };
+    const double before = energy();
     const SplitReport report = apply_split(engine_->edit(), split, scene_.material.density);
     engine_->restart();
     share_inherited_history(engine_->edit(), report);
     engine_->restart();
-    engine_->edit().energy.released_by_breakage +=
-        before - elastic_energy(engine_->state(), engine_->constants()) - report.kinetic_energy_change;
+    engine_->edit().energy.released_by_breakage += before - energy();
     control_.momentum_error = std::max(control_.momentum_error, report.momentum_error);
     control_.broken += report.broken;
   }

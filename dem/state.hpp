@@ -21,6 +21,7 @@ struct Contact {
   double normal_force = 0;        ///< >= 0 [N]
   double shear_force = 0;         ///< along (-n_y, n_x), on b [N]
   double shear_displacement = 0;  ///< tangential spring history [m]
+  double rolling_moment = 0;      ///< of the rolling resistance, on b [N m]
   double overlap_area = 0;        ///< [m^2]
   double overlap_width = 0;       ///< [m]
   double elastic_normal = 0;      ///< state function of the normal law [J]
@@ -33,6 +34,9 @@ struct EnergySums {
   double boundary_work = 0;
   double friction = 0;
   double damping = 0;
+  double contact_damping = 0;
+  double rolling = 0;
+  double gravity_work = 0;
   double contact_law_work = 0;
   double released_by_breakage = 0;
 };

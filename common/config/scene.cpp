@@ -20,13 +20,22 @@ struct NamedEffect {
 constexpr NamedEffect kEffects[] = {
     {"friction", &Effects::friction, UsedBy::dem},
     {"local_damping", &Effects::local_damping, UsedBy::dem},
+    {"contact_damping", &Effects::contact_damping, UsedBy::dem},
+    {"rolling_resistance", &Effects::rolling_resistance, UsedBy::dem},
+    {"gravity", &Effects::gravity, UsedBy::dem},
+    {"mass_scaling", &Effects::mass_scaling, UsedBy::dem},
     {"energy_ledger", &Effects::energy_ledger, UsedBy::dem},
     {"breakage", &Effects::breakage, UsedBy::both},
 };
 
-Effects read_effects(const Value& list, const std::string& expected) {
+std::vector<std::string> effect_names() {
   std::vector<std::string> names;
   for (const NamedEffect& effect : kEffects) names.emplace_back(effect.name);
+  return names;
+}
+
+Effects read_effects(const Value& list, const std::string& expected) {
+  const std::vector<std::string> names = effect_names();
   if (!list.is_list()) refuse(list, "effects", expected);
   Effects effects;
   for (const Value& item : list.items) {
@@ -124,8 +133,16 @@ void bind_contact(Specification& keys, Scene& scene) {
                        "tangential stiffness kt, with effect friction; auto: from the normal stiffness of the law");
   keys.number("contact.friction", scene.contact.friction, kNonNegative, "-", UsedBy::dem,
               "Coulomb coefficient in shear, with effect friction (Table 1)");
+  keys.number("contact.rolling_friction", scene.contact.rolling_friction, {0, 1, true, false}, "-", UsedBy::dem,
+              "largest rolling moment / (normal force * rolling radius), with effect rolling_resistance");
   keys.number("damping.local", scene.damping.local, {0, 1, false, true}, "-", UsedBy::dem,
               "Cundall local damping coefficient, with effect local_damping");
+  keys.number("damping.contact", scene.damping.contact, {0, 1, true, false}, "-", UsedBy::dem,
+              "viscous damping of a contact's normal motion, share of critical, with effect contact_damping");
+  keys.vector("gravity.acceleration", scene.gravity.acceleration, "m/s^2", UsedBy::dem,
+              "acceleration of free fall, with effect gravity");
+  keys.number("mass_scaling.smallest_mass", scene.mass_scaling.smallest_mass, {0, 1, true, false}, "-", UsedBy::dem,
+              "with effect mass_scaling, a lighter particle moves as if it had this share of the mean original mass");
   keys.number("time_step.safety", scene.time_step.safety, {0, 1, true, false}, "-", UsedBy::dem,
               "dt = safety sqrt(m_min / k_max); too large a value is unstable");
   keys.number("neighbours.skin", scene.neighbours.skin, {0, 2, true, false}, "diameter_min", UsedBy::dem,
@@ -220,7 +237,7 @@ Specification specification(Scene& scene) {
         scene.seed = *number;
       },
       [&scene](UsedBy) { return std::to_string(scene.seed); });
-  const std::string effects = "a list of friction, local_damping, energy_ledger, breakage";
+  const std::string effects = "a list of " + join(effect_names());
   keys.custom(
       {"effects", "-", "what exists in the run; what is not named costs nothing", effects, UsedBy::both},
       [&scene, effects](const Value& value) { scene.effects = read_effects(value, effects); },

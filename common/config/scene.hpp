@@ -20,6 +20,10 @@ struct Effects {
   bool local_damping = false;
   bool energy_ledger = false;
   bool breakage = false;
+  bool contact_damping = false;
+  bool rolling_resistance = false;
+  bool gravity = false;
+  bool mass_scaling = false;
 };
 
 struct MaterialOptions {
@@ -61,10 +65,20 @@ struct ContactOptions {
   double normal_stiffness = 5e9;               ///< N/m for mean_depth and potential, N/m^2 for area and foundation
   std::optional<double> tangential_stiffness;  ///< [N/m]; absent (auto): see contact/laws
   double friction = 0.5;                       ///< Coulomb coefficient in shear [-]
+  double rolling_friction = 0.1;               ///< rolling moment / (normal force * rolling radius), largest [-]
 };
 
 struct DampingOptions {
-  double local = 0.5;  ///< Cundall local damping coefficient [-]
+  double local = 0.5;    ///< Cundall local damping coefficient [-]
+  double contact = 0.2;  ///< viscous damping of a contact, share of critical [-]
+};
+
+struct GravityOptions {
+  Vec2 acceleration = Vec2(0, -9.81);  ///< [m/s^2]
+};
+
+struct MassScalingOptions {
+  double smallest_mass = 0.05;  ///< lighter particles move as if they had this share of the mean original mass [-]
 };
 
 struct TimeStepOptions {
@@ -124,6 +138,8 @@ struct Scene {
   AssemblyOptions assembly;
   ContactOptions contact;
   DampingOptions damping;
+  GravityOptions gravity;
+  MassScalingOptions mass_scaling;
   TimeStepOptions time_step;
   NeighbourOptions neighbours;
   PreparationOptions preparation;

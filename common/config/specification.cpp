@@ -60,6 +60,25 @@ void Specification::optional_number(const std::string& path, std::optional<doubl
       [&value](UsedBy) { return value ? print_number(*value) : "auto"; });
 }
 
+void Specification::vector(const std::string& path, Vec2& value, const std::string& unit, UsedBy used_by,
+                           const std::string& description) {
+  const Key key{path, unit, description, "a list of two numbers", used_by};
+  custom(
+      key,
+      [=, &value](const Value& given) {
+        if (!given.is_list() || given.items.size() != 2) refuse(given, path, with_unit(key.expected, unit));
+        const Key component{path, unit, description, "a number", used_by};
+        value = Vec2(read_number(given.items[0], kAny, component), read_number(given.items[1], kAny, component));
+      },
+      [&value](UsedBy) {
+        std::string text = "[";
+        text += print_number(value.x());
+        text += ", ";
+        text += print_number(value.y());
+        return text + "]";
+      });
+}
+
 void Specification::integer(const std::string& path, int& value, int low, int high, const std::string& unit,
                             UsedBy used_by, const std::string& description) {
   const Range range{static_cast<double>(low), static_cast<double>(high)};

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/geometry/vec2.hpp"
+
 namespace common {
 
 struct Value;
@@ -55,6 +57,9 @@ class Specification {
   /// `auto` or a number.
   void optional_number(const std::string& path, std::optional<double>& value, Range range, const std::string& unit,
                        UsedBy used_by, const std::string& description);
+  /// A list of two numbers.
+  void vector(const std::string& path, Vec2& value, const std::string& unit, UsedBy used_by,
+              const std::string& description);
   void integer(const std::string& path, int& value, int low, int high, const std::string& unit, UsedBy used_by,
                const std::string& description);
   void flag(const std::string& path, bool& value, UsedBy used_by, const std::string& description);

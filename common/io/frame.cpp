@@ -59,6 +59,7 @@ void contact_fields(ContactArrays& c, const Field& field) {
 
 constexpr char kRing[] = "boundary/ring";
 constexpr char kSlip[] = "contacts/shear_displacement";
+constexpr char kRolling[] = "contacts/rolling_moment";
 
 std::optional<Stage> stage_named(const std::string& name) {
   for (const Stage stage : {Stage::compaction, Stage::relaxation, Stage::confinement, Stage::shear}) {
@@ -167,6 +168,10 @@ void validate(const Frame& frame, FrameContent content, const Source& source) {
     check_rows(kSlip, frame.contacts.shear_displacement->size(), frame.contacts.size(), source);
     check_finite(kSlip, *frame.contacts.shear_displacement, source);
   }
+  if (frame.contacts.rolling_moment) {
+    check_rows(kRolling, frame.contacts.rolling_moment->size(), frame.contacts.size(), source);
+    check_finite(kRolling, *frame.contacts.rolling_moment, source);
+  }
   validate_particles(frame.particles, source);
   validate_contacts(frame, content, source);
   check_known(kRing, frame.ring, "particles/id", frame.particles.id, source);
@@ -200,6 +205,9 @@ Contents contents_of(const Frame& frame) {
   contact_fields(frame.contacts, put(frame.contacts.size()));
   if (frame.contacts.shear_displacement) {
     put_column(contents, kSlip, *frame.contacts.shear_displacement, "m", "tangential spring, along (-n_y, n_x)");
+  }
+  if (frame.contacts.rolling_moment) {
+    put_column(contents, kRolling, *frame.contacts.rolling_moment, "N m", "of the rolling resistance, on b");
   }
   put_column(contents, kRing, frame.ring, "1", "ids of the boundary particles in order around the assembly");
   for (const Column& c : frame.history) put_column(contents, "history/" + c.name, c.values, c.unit, c.description);
@@ -284,6 +292,7 @@ Frame read_frame(const std::filesystem::path& path, FrameContent content) {
   outline_fields(frame.particles, get);
   if (content != FrameContent::particles || contents.contains("contacts/a")) contact_fields(frame.contacts, get);
   if (contents.contains(kSlip)) frame.contacts.shear_displacement = get_column<double>(contents, kSlip, source);
+  if (contents.contains(kRolling)) frame.contacts.rolling_moment = get_column<double>(contents, kRolling, source);
   get(kRing, frame.ring, "", "", false);
   frame.history = columns_in(contents, "history", source);
   frame.checkpoint = columns_in(contents, "checkpoint", source);

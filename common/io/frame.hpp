@@ -48,6 +48,7 @@ struct Contacts {
   std::vector<double> overlap_area;        ///< C [m^2]
   std::vector<double> overlap_width;       ///< C [m]
   std::optional<std::vector<double>> shear_displacement;  ///< C [m]; only in scenes with friction
+  std::optional<std::vector<double>> rolling_moment;      ///< C, on b [N m]; only in scenes with rolling resistance
 
   std::size_t size() const { return a.size(); }
 };

@@ -1,6 +1,11 @@
 #include "dem/contact/forces.hpp"
 
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "dem/effects/contact_damping.hpp"
+#include "dem/effects/rolling_resistance.hpp"
 
 namespace dem {
 namespace {
@@ -20,27 +25,62 @@ RelativeVelocity relative_velocity(const Particles& p, const Pair& pair, const V
   return {v.dot(normal), v.dot(common::perpendicular(normal))};
 }
 
+// Effects that are part of a contact's evaluation; the index of a kernel in the table is their bits in this order.
+struct ContactEffects {
+  bool friction, contact_damping, rolling_resistance, energy_ledger;
+};
+constexpr std::size_t kKernels = 16;
+
+constexpr ContactEffects effects_at(std::size_t index) {
+  return {(index & 1) != 0, (index & 2) != 0, (index & 4) != 0, (index & 8) != 0};
+}
+
+std::size_t index_of(const common::Effects& e) {
+  return std::size_t{e.friction} | std::size_t{e.contact_damping} << 1 | std::size_t{e.rolling_resistance} << 2 |
+         std::size_t{e.energy_ledger} << 3;
+}
+
 // Forces and stored energy of a contact at one instant; all zero without overlap.
 struct Instant {
-  double normal_force = 0, shear_force = 0, elastic_normal = 0;
+  double normal_force = 0;  // of the normal law alone
+  double viscous_force = 0, shear_force = 0, rolling_moment = 0, elastic_normal = 0;
 };
 
-// Energies of the step from `before` to `now`.
-template <class Law, bool kFriction>
-void book_work(ContactSums& sums, const Instant& before, const Instant& now, const RelativeVelocity& v, double dt,
-               double kt) {
+// How the two particles moved relative to each other in the step.
+struct Motion {
+  RelativeVelocity velocity;
+  double spin = 0;  // angular velocity of b less that of a
+};
+
+// Energies of the step from `before` to `now`; `kr`: rolling stiffness.
+template <class Law, ContactEffects kOn>
+void book_work(ContactSums& sums, const Instant& before, const Instant& now, const Motion& motion, double dt, double kt,
+               double kr) {
   if constexpr (!Law::kGradient) {
-    const double work = -0.5 * (before.normal_force + now.normal_force) * v.normal * dt;
+    const double work = -0.5 * (before.normal_force + now.normal_force) * motion.velocity.normal * dt;
     sums.contact_law_work += work - (now.elastic_normal - before.elastic_normal);
   }
-  if constexpr (kFriction) {
-    const double work = -0.5 * (before.shear_force + now.shear_force) * v.tangential * dt;
+  if constexpr (kOn.contact_damping) {
+    sums.contact_damping -= 0.5 * (before.viscous_force + now.viscous_force) * motion.velocity.normal * dt;
+  }
+  if constexpr (kOn.friction) {
+    const double work = -0.5 * (before.shear_force + now.shear_force) * motion.velocity.tangential * dt;
     const double stored = 0.5 * (now.shear_force * now.shear_force - before.shear_force * before.shear_force) / kt;
     sums.friction += work - stored;
   }
+  if constexpr (kOn.rolling_resistance) {
+    const double work = -0.5 * (before.rolling_moment + now.rolling_moment) * motion.spin * dt;
+    const double stored =
+        0.5 * (now.rolling_moment * now.rolling_moment - before.rolling_moment * before.rolling_moment) / kr;
+    sums.rolling += work - stored;
+  }
 }
 
-template <class Law, bool kFriction, bool kLedger>
+double inverse_mass_of(const ContactScene& scene, std::int32_t i) {
+  return scene.particles.boundary[i] ? 0 : scene.inverse_mass[i];
+}
+
+template <class Law, ContactEffects kOn>
 ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t first, std::size_t last) {
   const Particles& p = scene.particles;
   const double kt = scene.constants.tangential_stiffness;
@@ -61,19 +101,34 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
     const bool known = slots.overlap_area[k] > 0;
     if (!known && !(o.area > 0)) continue;
 
+    double rolling_arm = 0, kr = 0;
+    if constexpr (kOn.rolling_resistance) {
+      rolling_arm = rolling_radius(p.area[pair.a], p.area[pair.b]);
+      kr = scene.constants.rolling_stiffness * rolling_arm * rolling_arm;
+    }
+    const auto motion_at = [&](const Vec2& point, const Vec2& normal) {
+      Motion motion{relative_velocity(p, pair, point, normal)};
+      if constexpr (kOn.rolling_resistance) motion.spin = p.angular_velocity[pair.b] - p.angular_velocity[pair.a];
+      return motion;
+    };
+
     Instant before;
-    if constexpr (kLedger) {
+    if constexpr (kOn.energy_ledger) {
       if (known) {
         before.normal_force = slots.normal_force[k];
         before.elastic_normal = slots.elastic_normal[k];
-        if constexpr (kFriction) before.shear_force = -kt * slots.shear_displacement[k];
+        if constexpr (kOn.contact_damping) {
+          before.viscous_force = slots.viscous_force[k];
+          before.normal_force -= before.viscous_force;
+        }
+        if constexpr (kOn.friction) before.shear_force = -kt * slots.shear_displacement[k];
+        if constexpr (kOn.rolling_resistance) before.rolling_moment = slots.rolling_moment[k];
       }
     }
     slots.overlap_area[k] = o.area;
     if (!(o.area > 0)) {
-      if constexpr (kLedger) {
-        const RelativeVelocity v = relative_velocity(p, pair, slots.point[k], slots.normal[k]);
-        book_work<Law, kFriction>(sums, before, {}, v, scene.dt, kt);
+      if constexpr (kOn.energy_ledger) {
+        book_work<Law, kOn>(sums, before, {}, motion_at(slots.point[k], slots.normal[k]), scene.dt, kt, kr);
       }
       slots.load[k] = {};
       continue;
@@ -88,38 +143,61 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
     slots.overlap_width[k] = o.width;
     slots.point[k] = point;
     slots.normal[k] = normal;
-    slots.normal_force[k] = now.normal_force;
-    if constexpr (kLedger) slots.elastic_normal[k] = now.elastic_normal = action.energy;
+    if constexpr (kOn.energy_ledger) slots.elastic_normal[k] = now.elastic_normal = action.energy;
 
-    Vec2 force = now.normal_force * normal;
-    if constexpr (kFriction || (kLedger && !Law::kGradient)) {
-      const RelativeVelocity v = relative_velocity(p, pair, point, normal);
-      if constexpr (kFriction) {
-        const double limit = scene.friction * now.normal_force / kt;
-        double shear = (known ? slots.shear_displacement[k] : 0.0) + v.tangential * scene.dt;
-        const bool slides = std::abs(shear) > limit;
-        shear = slides ? std::copysign(limit, shear) : shear;
-        sums.sliding += slides;
-        slots.shear_displacement[k] = shear;
-        now.shear_force = -kt * shear;
-        force += now.shear_force * common::perpendicular(normal);
-      }
-      if constexpr (kLedger) book_work<Law, kFriction>(sums, before, now, v, scene.dt, kt);
+    Motion motion{};
+    if constexpr (kOn.friction || kOn.contact_damping || kOn.rolling_resistance ||
+                  (kOn.energy_ledger && !Law::kGradient)) {
+      motion = motion_at(point, normal);
     }
-    slots.load[k] = {force, -common::cross(point - p.position[pair.a], force),
-                     common::cross(point - p.position[pair.b], force)};
+    double total = now.normal_force;
+    if constexpr (kOn.contact_damping) {
+      now.viscous_force =
+          viscous_force(now.normal_force, Law::stiffness_bound(o.width, scene.constants), scene.constants.damping,
+                        inverse_mass_of(scene, pair.a) + inverse_mass_of(scene, pair.b), motion.velocity.normal);
+      total += now.viscous_force;
+      if constexpr (kOn.energy_ledger) slots.viscous_force[k] = now.viscous_force;
+    }
+    slots.normal_force[k] = total;
+    Vec2 force = total * normal;
+    if constexpr (kOn.friction) {
+      const double limit = scene.friction * total / kt;
+      double shear = (known ? slots.shear_displacement[k] : 0.0) + motion.velocity.tangential * scene.dt;
+      const bool slides = std::abs(shear) > limit;
+      shear = slides ? std::copysign(limit, shear) : shear;
+      sums.sliding += slides;
+      slots.shear_displacement[k] = shear;
+      now.shear_force = -kt * shear;
+      force += now.shear_force * common::perpendicular(normal);
+    }
+    ContactLoad& load = slots.load[k];
+    load = {force, -common::cross(point - p.position[pair.a], force), common::cross(point - p.position[pair.b], force)};
+    if constexpr (kOn.rolling_resistance) {
+      now.rolling_moment = rolling_moment(known ? slots.rolling_moment[k] : 0.0, motion.spin * scene.dt, kr,
+                                          scene.constants.rolling_friction * rolling_arm * total);
+      slots.rolling_moment[k] = now.rolling_moment;
+      load.moment_a -= now.rolling_moment;
+      load.moment_b += now.rolling_moment;
+    }
+    if constexpr (kOn.energy_ledger) book_work<Law, kOn>(sums, before, now, motion, scene.dt, kt, kr);
   }
   return sums;
 }
 
+template <class Law, std::size_t... kIndex>
+constexpr std::array<EvaluateContacts, kKernels> table_of(std::index_sequence<kIndex...>) {
+  return {evaluate<Law, effects_at(kIndex)>...};
+}
+
 template <class Law>
 ContactKernel kernel_of(const common::Effects& effects) {
-  constexpr EvaluateContacts kTable[2][2] = {{evaluate<Law, false, false>, evaluate<Law, false, true>},
-                                             {evaluate<Law, true, false>, evaluate<Law, true, true>}};
+  constexpr std::array<EvaluateContacts, kKernels> kTable = table_of<Law>(std::make_index_sequence<kKernels>());
   std::string name = Law::kName;
   if (effects.friction) name += " + friction";
+  if (effects.contact_damping) name += " + contact_damping";
+  if (effects.rolling_resistance) name += " + rolling_resistance";
   if (effects.energy_ledger) name += " + energy_ledger";
-  return {kTable[effects.friction][effects.energy_ledger], Law::stiffness_bound, name};
+  return {kTable[index_of(effects)], Law::stiffness_bound, name};
 }
 
 }  // namespace
@@ -142,8 +220,14 @@ ContactConstants contact_constants(const common::Scene& scene) {
   ContactConstants c;
   c.normal_stiffness = scene.contact.normal_stiffness;
   c.length = 0.5 * (scene.assembly.diameter_min + scene.assembly.diameter_max);
-  c.tangential_stiffness = scene.contact.tangential_stiffness.value_or(
-      common::stiffness_is_per_area(scene.contact.law) ? 0.2 * c.normal_stiffness * c.length : c.normal_stiffness);
+  const double stiffness =
+      common::stiffness_is_per_area(scene.contact.law) ? 0.2 * c.normal_stiffness * c.length : c.normal_stiffness;
+  c.tangential_stiffness = scene.contact.tangential_stiffness.value_or(stiffness);
+  if (scene.effects.contact_damping) c.damping = scene.damping.contact;
+  if (scene.effects.rolling_resistance) {
+    c.rolling_friction = scene.contact.rolling_friction;
+    c.rolling_stiffness = rolling_stiffness(stiffness, c.rolling_friction);
+  }
   return c;
 }
 
@@ -151,6 +235,9 @@ double elastic_energy(const State& state, const ContactConstants& constants) {
   double sum = 0;
   for (const Contact& c : state.contacts) {
     sum += c.elastic_normal + 0.5 * c.shear_force * c.shear_force / constants.tangential_stiffness;
+    if (constants.rolling_stiffness == 0) continue;
+    const double arm = rolling_radius(state.particles.area[c.a], state.particles.area[c.b]);
+    sum += 0.5 * c.rolling_moment * c.rolling_moment / (constants.rolling_stiffness * arm * arm);
   }
   return sum;
 }

@@ -1,5 +1,5 @@
-// Forces of all contacts at one instant: overlap -> normal law -> Coulomb friction with history -> load on the two
-// particles; then the resultant on each particle.
+// Forces of all contacts at one instant: overlap -> normal law -> effects of the contact (damping, Coulomb friction and
+// rolling resistance with their histories) -> load on the two particles; then the resultant on each particle.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,16 @@ struct ContactSums {
   std::int64_t contacts = 0;
   std::int64_t sliding = 0;     ///< contacts at the Coulomb limit
   double friction = 0;          ///< dissipated by friction in the step that led here [J]
+  double contact_damping = 0;   ///< dissipated by contact damping [J]
+  double rolling = 0;           ///< dissipated by rolling resistance [J]
   double contact_law_work = 0;  ///< path-dependent work of the normal law [J]
 
   ContactSums& operator+=(const ContactSums& o) {
     contacts += o.contacts;
     sliding += o.sliding;
     friction += o.friction;
+    contact_damping += o.contact_damping;
+    rolling += o.rolling;
     contact_law_work += o.contact_law_work;
     return *this;
   }
@@ -40,6 +44,7 @@ struct ContactSums {
 struct ContactScene {
   const Particles& particles;
   const WorldOutlines& outlines;
+  const std::vector<double>& inverse_mass;  ///< N [1/kg]
   const ContactConstants& constants;
   double friction;  ///< coefficient in force
   double dt;        ///< time since the last evaluation [s]; 0 re-evaluates the forces without any slip

@@ -25,6 +25,9 @@ struct ContactConstants {
   double normal_stiffness = 0;      ///< k above
   double tangential_stiffness = 0;  ///< kt [N/m]
   double length = 1;                ///< L: mean diameter of the scene [m]
+  double damping = 0;               ///< share of critical, with effect contact_damping
+  double rolling_friction = 0;      ///< mu_r, with effect rolling_resistance
+  double rolling_stiffness = 0;     ///< of a contact's rolling spring over R^2, see rolling_resistance.hpp [N/m]
 };
 
 struct MeanDepthLaw {

@@ -37,7 +37,9 @@ void ContactSlots::renew(const std::vector<Pair>& pairs, const common::Effects& 
   pick(normal_force, from, 0.0);
   pick(load, from, {});
   if (effects.friction) pick(shear_displacement, from, 0.0);
+  if (effects.rolling_resistance) pick(rolling_moment, from, 0.0);
   if (effects.energy_ledger) pick(elastic_normal, from, 0.0);
+  if (effects.contact_damping && effects.energy_ledger) pick(viscous_force, from, 0.0);
 }
 
 void ContactSlots::load_histories(const std::vector<Contact>& contacts) {
@@ -49,6 +51,7 @@ void ContactSlots::load_histories(const std::vector<Contact>& contacts) {
     overlap_area[k] = c.overlap_area;
     normal_force[k] = c.normal_force;
     if (!shear_displacement.empty()) shear_displacement[k] = c.shear_displacement;
+    if (!rolling_moment.empty()) rolling_moment[k] = c.rolling_moment;
     if (!elastic_normal.empty()) elastic_normal[k] = c.elastic_normal;
   }
 }
@@ -69,6 +72,7 @@ void ContactSlots::store(std::vector<Contact>& contacts, double tangential_stiff
       c.shear_displacement = shear_displacement[k];
       c.shear_force = -tangential_stiffness * shear_displacement[k];
     }
+    if (!rolling_moment.empty()) c.rolling_moment = rolling_moment[k];
     if (!elastic_normal.empty()) c.elastic_normal = elastic_normal[k];
     contacts.push_back(c);
   }

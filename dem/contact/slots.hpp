@@ -29,9 +29,28 @@ struct ContactSlots {
   std::vector<double> normal_force;   ///< [N]
   std::vector<ContactLoad> load;
   std::vector<double> shear_displacement;  ///< friction: spring history [m]; the force is -kt times it
+  std::vector<double> rolling_moment;      ///< rolling_resistance: history, the moment on b [N m]
   std::vector<double> elastic_normal;      ///< energy_ledger: state function of the normal law [J]
+  std::vector<double> viscous_force;       ///< contact_damping with energy_ledger: part of normal_force [N]
 
   std::size_t size() const { return pair.size(); }
+
+  /// Calls visit(name, array) for every array, also for the empty ones.
+  template <class Visit>
+  void for_each_array(const Visit& visit) const {
+    visit("pair", pair);
+    visit("feature", feature);
+    visit("overlap area", overlap_area);
+    visit("overlap width", overlap_width);
+    visit("point", point);
+    visit("normal", normal);
+    visit("normal force", normal_force);
+    visit("load", load);
+    visit("shear displacement", shear_displacement);
+    visit("rolling moment", rolling_moment);
+    visit("elastic energy", elastic_normal);
+    visit("viscous force", viscous_force);
+  }
 
   /// Slots for other pairs; contacts that have a slot before and after keep all that belongs to them.
   void renew(const std::vector<Pair>& pairs, const common::Effects& effects);

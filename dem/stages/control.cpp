@@ -128,7 +128,7 @@ void outline_ring(Engine& engine) {
 void renew_ring(Engine& engine) {
   State& state = engine.edit();
   Particles& p = state.particles;
-  const double energy_before = kinetic_energy(p) + elastic_energy(state, engine.constants());
+  const double energy_before = engine.kinetic_energy() + elastic_energy(state, engine.constants());
   const double mean_force = mean_normal_force(state);
   const std::vector<std::uint8_t> before = p.boundary;
   state.ring = ring_of(p);
@@ -149,7 +149,7 @@ void renew_ring(Engine& engine) {
     for (const std::int32_t i : staying) p.boundary[i] = 1;
     engine.restart();
   }
-  state.energy.boundary_work += kinetic_energy(p) + elastic_energy(state, engine.constants()) - energy_before;
+  state.energy.boundary_work += engine.kinetic_energy() + elastic_energy(state, engine.constants()) - energy_before;
 }
 
 ServoGains sample_gains(const common::Scene& scene, const State& state, double pressure) {

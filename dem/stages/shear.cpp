@@ -32,7 +32,7 @@ void Shear::begin(Engine& engine, Control& control) {
   control.solid_area = 0;
   for (const double a : state.particles.area) control.solid_area += a;
   engine.restart();
-  control.energy_at_start = elastic_energy(state, engine.constants()) + kinetic_energy(state.particles);
+  control.energy_at_start = elastic_energy(state, engine.constants()) + engine.kinetic_energy();
 }
 
 // Grows smoothly from zero, so that the lateral stress does not feel a jolt: s^2 (3 - 2 s), mean 1/2.

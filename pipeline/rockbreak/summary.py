@@ -10,6 +10,9 @@ from .run_directory import write_text
 
 SMOOTHING_WINDOW = 0.002  # axial strain; peak_sin_phi is the largest value of the running mean over it
 RESIDUAL_WINDOW = 0.02    # axial strain; residual_sin_phi is the mean over the last of it
+# Entries of effects that the paper's scenes do not have: key of the summary, column of the history.
+EFFECT_ENERGIES = {"contact_damping": "contact_damping_dissipation", "rolling": "rolling_dissipation",
+                   "gravity_work": "gravity_work"}
 REPORTED_STRAINS = (0.0, 0.02, 0.05, 0.07, 0.10, 0.15)
 
 
@@ -65,7 +68,10 @@ def summarize(results):
             "released_by_breakage": at(history, "released_by_breakage", -1),
             "contact_law_work": at(history, "contact_law_work", -1),
             "residual": at(history, "energy_residual", -1),
+            **{key: at(history, column, -1) for key, column in EFFECT_ENERGIES.items() if column in history},
         },
+        **({"mass_scaling": {"scaled_particles": integer(at(history, "scaled_particles", -1)),
+                             "added_mass": at(history, "added_mass", -1)}} if "added_mass" in history else {}),
         "max_inertial_number": largest(shear, "inertial_number"),
         "wall_seconds": wall_seconds(results.ledger()),
         "cpu_seconds": cpu_seconds(results.ledger()),

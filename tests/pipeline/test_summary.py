@@ -89,6 +89,21 @@ def test_what_an_effect_would_write_is_null_without_it(tmp_path):
     assert summary["broken_total"] is None
 
 
+def test_effects_beyond_the_papers_have_keys_only_where_they_exist(tmp_path, summary):
+    assert "mass_scaling" not in summary and "gravity_work" not in summary["energy"]
+    run = synthetic.write_run(tmp_path / "run", frames=3)
+    for path in sorted((run / "frames").glob("*.h5")):
+        with h5py.File(path, "a") as frame:
+            rows = len(frame["history/step"])
+            for column, value in (("gravity_work", 7.0), ("rolling_dissipation", 3.0), ("scaled_particles", 5.0),
+                                  ("added_mass", 0.02)):
+                frame["history"][column] = np.full(rows, value)
+    found = Results(RunDirectory(run)).summary
+    assert found["energy"]["gravity_work"] == 7 and found["energy"]["rolling"] == 3
+    assert "contact_damping" not in found["energy"]
+    assert found["mass_scaling"] == {"scaled_particles": 5, "added_mass": 0.02}
+
+
 def test_a_run_that_only_has_its_prepared_state_has_a_summary(tmp_path):
     run = synthetic.write_run(tmp_path / "r", frames=3)
     for k in (1, 2):

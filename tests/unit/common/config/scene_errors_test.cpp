@@ -16,7 +16,8 @@ std::string error_of(const std::string& text, const Overrides& overrides = {}) {
 }
 
 const std::string kSections =
-    "seed, effects, material, assembly, contact, damping, time_step, preparation, servo, shear, breakage, output";
+    "seed, effects, material, assembly, contact, damping, gravity, mass_scaling, time_step, neighbours, preparation, "
+    "servo, shear, breakage, output";
 const std::string kStiffnessUnit = " [N/m for mean_depth and potential, N/m^2 for area and foundation]";
 
 struct Case {
@@ -84,9 +85,10 @@ TEST_CASE("A value of the wrong type is reported with what was found and expecte
       {"output: {keep_frames: 0}\n", "s.yaml:1:23: output.keep_frames: found 0, expected all or an integer >= 1"},
       {"contact: [1, 2]\n",
        "s.yaml:1:10: contact: found a list, expected a map of keys (law, normal_stiffness, tangential_stiffness, "
-       "friction)"},
+       "friction, rolling_friction)"},
       {"contact: 3\n",
-       "s.yaml:1:10: contact: found 3, expected a map of keys (law, normal_stiffness, tangential_stiffness, friction)"},
+       "s.yaml:1:10: contact: found 3, expected a map of keys (law, normal_stiffness, tangential_stiffness, friction, "
+       "rolling_friction)"},
       {"- seed\n", "s.yaml:1:1: found a list, expected a map of keys (" + kSections + ")"},
       {"hello\n", "s.yaml:1:1: found \"hello\", expected a map of keys (" + kSections + ")"},
       {"? [1, 2]\n: 3\n", "s.yaml:1:3: found a list as a key, expected a name"},
@@ -169,7 +171,9 @@ TEST_CASE("A file that cannot be a scene is named") {
 }
 
 TEST_CASE("Effects are a list of known names, each once") {
-  const std::string list = "a list of friction, local_damping, energy_ledger, breakage";
+  const std::string list =
+      "a list of friction, local_damping, contact_damping, rolling_resistance, gravity, mass_scaling, energy_ledger, "
+      "breakage";
   check_all({
       {"effects: [friction, zork]\n", "s.yaml:1:21: effects: found \"zork\", expected " + list},
       {"effects: [frictoin]\n",
@@ -178,6 +182,21 @@ TEST_CASE("Effects are a list of known names, each once") {
        "s.yaml:1:31: effects: found \"friction\" twice, expected each effect once"},
       {"effects: friction\n", "s.yaml:1:10: effects: found \"friction\", expected " + list},
       {"effects: [[friction]]\n", "s.yaml:1:11: effects: found a list, expected " + list},
+  });
+}
+
+TEST_CASE("An acceleration is a list of two finite numbers") {
+  const std::string expected = "s.yaml:1:25: gravity.acceleration: found ";
+  check_all({
+      {"gravity: {acceleration:  -9.81}\n",
+       "s.yaml:1:26: gravity.acceleration: found -9.81, expected a list of two "
+       "numbers [m/s^2]"},
+      {"gravity: {acceleration: [0]}\n", expected + "a list, expected a list of two numbers [m/s^2]"},
+      {"gravity: {acceleration: [0, -1, 0]}\n", expected + "a list, expected a list of two numbers [m/s^2]"},
+      {"gravity: {acceleration: [0, down]}\n",
+       "s.yaml:1:29: gravity.acceleration: found \"down\", expected a number [m/s^2]"},
+      {"gravity: {acceleration: [.nan, 0]}\n",
+       "s.yaml:1:26: gravity.acceleration: found .nan, expected a number [m/s^2]"},
   });
 }
 

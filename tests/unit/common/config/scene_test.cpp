@@ -46,8 +46,13 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
       {"contact.normal_stiffness", "2e9"},
       {"contact.tangential_stiffness", "1e9"},
       {"contact.friction", "0.4"},
+      {"contact.rolling_friction", "0.2"},
       {"damping.local", "0.4"},
+      {"damping.contact", "0.3"},
+      {"gravity.acceleration", "[0, -1.62]"},
+      {"mass_scaling.smallest_mass", "0.1"},
       {"time_step.safety", "0.2"},
+      {"neighbours.skin", "0.1"},
       {"preparation.confining_pressure", "1e6"},
       {"preparation.void_ratio", "0.31"},
       {"preparation.definition", "e1"},
@@ -105,12 +110,13 @@ TEST_CASE("Every kind of value is read into its member") {
   const scratch::Folder folder;
   const Scene scene = scene_of(folder, R"(
 seed: 18446744073709551615
-effects: [breakage, friction]
+effects: [breakage, friction, gravity]
 material: {sigma_ci: 1e8, m_i: 11, plane_stress: true}
 assembly:
   particles: 30
   shapes: {types: 5, aspect: .5}
 contact: {law: mean_depth, normal_stiffness: 1.0e+9, tangential_stiffness: 5e8}
+gravity: {acceleration: [3, -9e0]}
 preparation: {definition: e2, from: states/../p.h5}
 servo: {max_rate: 0.1}
 shear: {frame_interval: auto}
@@ -120,8 +126,10 @@ output: {durability: 5, keep_frames: 3}
   CHECK(scene.seed == 18446744073709551615ull);
   CHECK(scene.effects.breakage);
   CHECK(scene.effects.friction);
+  CHECK(scene.effects.gravity);
   CHECK_FALSE(scene.effects.local_damping);
   CHECK_FALSE(scene.effects.energy_ledger);
+  CHECK(scene.gravity.acceleration == Vec2(3, -9));
   CHECK(scene.material.sigma_ci == 1e8);
   CHECK(scene.material.m_i == 11);
   CHECK(scene.material.plane_stress);
