@@ -1,11 +1,8 @@
 #include "common/config/outlines.hpp"
 
-#include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <string>
 
+#include "common/config/csv.hpp"
 #include "common/config/document.hpp"
 #include "common/config/specification.hpp"
 #include "common/config/values.hpp"
@@ -32,43 +29,16 @@ void check_outline(const Polygon& outline, std::size_t index, const std::string&
                   "; expected a convex outline, counter-clockwise");
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<Polygon> read_csv(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream stream(file);
-  if (!stream) throw bad_input(file.string() + ": the file cannot be read: " + std::strerror(errno));
+std::vector<Polygon> outlines_of(const std::vector<CsvRow>& rows) {
   std::vector<Polygon> outlines;
   std::vector<std::string> starts;  // place of each outline's first row
-  std::string type, line;
-  bool header_allowed = true;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line = trimmed(line);
-    if (line.empty() || line[0] == '#') continue;
-    const std::string where = file.string() + ':' + std::to_string(number);
-    std::vector<std::string> fields;
-    std::istringstream parts(line);
-    for (std::string field; std::getline(parts, field, ',');) fields.push_back(trimmed(field));
-    const bool complete = fields.size() == 3;
-    const auto x = complete ? parse_number(fields[1]) : std::nullopt;
-    const auto y = complete ? parse_number(fields[2]) : std::nullopt;
-    if (!x || !y) {
-      const bool header = complete && header_allowed && !x && !y && !looks_like_number(fields[1]);
-      if (!header) throw bad_input(where + ": found " + in_quotes(line) + ", expected type,x,y with two numbers");
-    } else {
-      if (outlines.empty() || fields[0] != type) {
-        outlines.emplace_back();
-        starts.push_back(where);
-        type = fields[0];
-      }
-      outlines.back().emplace_back(*x, *y);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i == 0 || rows[i].label != rows[i - 1].label) {
+      outlines.emplace_back();
+      starts.push_back(rows[i].where);
     }
-    header_allowed = false;
+    outlines.back().emplace_back(rows[i].numbers[0], rows[i].numbers[1]);
   }
-  if (outlines.empty()) throw bad_input(file.string() + ": the file has no outlines, expected rows of type,x,y");
   for (std::size_t i = 0; i < outlines.size(); ++i) check_outline(outlines[i], i, starts[i], "outlines");
   return outlines;
 }
@@ -94,11 +64,8 @@ std::vector<Polygon> read_outlines(const Value& list, const std::string& path) {
 }
 
 std::vector<Polygon> read_outline_file(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw bad_input(file.string() + ": the file does not exist");
-  if (std::filesystem::is_directory(file)) {
-    throw bad_input(file.string() + ": found a directory, expected a file of outlines");
-  }
-  if (file.extension() == ".csv") return read_csv(file);
+  require_file(file, "outlines");
+  if (file.extension() == ".csv") return outlines_of(read_csv(file, "type,x,y", true, "outlines"));
   std::vector<Polygon> outlines = read_outlines(load_document(file), "outlines");
   if (outlines.empty()) throw bad_input(file.string() + ": the list is empty, expected at least one outline");
   return outlines;

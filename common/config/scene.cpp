@@ -1,5 +1,7 @@
 #include "common/config/scene.hpp"
 
+#include <cmath>
+
 #include "common/config/document.hpp"
 #include "common/config/outlines.hpp"
 #include "common/config/sections.hpp"
@@ -11,6 +13,8 @@ namespace common {
 namespace {
 
 constexpr int kMany = 10'000'000;
+/// Of an assembly's mass in one particle: with more, a grading cannot be met.
+constexpr double kLargestShare = 0.1;
 
 struct NamedEffect {
   const char* name;
@@ -69,9 +73,28 @@ void bind_assembly(Specification& keys, AssemblyOptions& assembly) {
   keys.integer("assembly.particles", assembly.particles, 1, kMany, "-", UsedBy::dem,
                "number of particles generated (Table 1: 1194)");
   keys.number("assembly.diameter_min", assembly.diameter_min, kPositive, "m", UsedBy::dem,
-              "smallest diameter, the longest distance between two vertices; sizes are uniform in between (Table 1)");
+              "smallest diameter, the longest distance between two vertices (Table 1); with a grading, its smallest");
   keys.number("assembly.diameter_max", assembly.diameter_max, kPositive, "m", UsedBy::dem,
-              "largest diameter (Table 1)");
+              "largest diameter (Table 1); with a grading, its largest");
+  keys.custom(
+      {"assembly.grading", "m, -",
+       "sizes: uniform by number between the diameters, or a curve [diameter, fraction by mass finer], linear in "
+       "between; "
+       "from a list or a file (CSV diameter,passing or YAML), relative to the scene's folder",
+       "uniform, a list, each item a point [diameter, passing], or the name of a file", UsedBy::dem},
+      [&assembly](const Value& value) {
+        assembly.grading.clear();
+        assembly.grading_file.clear();
+        if (value.is_list()) {
+          assembly.grading = read_grading(value, "assembly.grading");
+        } else if (!value.is_scalar() || value.text.empty() || (!value.quoted && parse_number(value.text))) {
+          refuse(value, "assembly.grading",
+                 "uniform, a list, each item a point [diameter, passing], or the name of a file");
+        } else if (value.text != "uniform") {
+          assembly.grading_file = value.text;
+        }
+      },
+      [&assembly](UsedBy) { return assembly.grading.empty() ? "uniform" : print_grading(assembly.grading); });
 
   ShapeOptions& shapes = assembly.shapes;
   const std::vector<std::string> sources{"generated", "outlines", "file"};
@@ -255,14 +278,18 @@ Specification specification(Scene& scene) {
   return keys;
 }
 
+bool on_command_line(const Specification& keys, const std::string& path) {
+  return keys.where(path).rfind("--set ", 0) == 0;
+}
+
 // Absolute path of a file named by key `path`: relative to the scene's folder, or to the working directory if it came
 // from the command line.
 std::string absolute_name(const Specification& keys, const std::string& path, const std::string& name,
                           const std::filesystem::path& scene_file) {
   if (name.empty()) return name;
-  const bool from_command_line = keys.where(path).rfind("--set ", 0) == 0;
-  const std::filesystem::path folder =
-      from_command_line ? std::filesystem::current_path() : std::filesystem::absolute(scene_file).parent_path();
+  const std::filesystem::path folder = on_command_line(keys, path)
+                                           ? std::filesystem::current_path()
+                                           : std::filesystem::absolute(scene_file).parent_path();
   return (folder / name).lexically_normal().string();
 }
 
@@ -272,7 +299,7 @@ void resolve_shapes(Specification& keys, ShapeOptions& shapes) {
   const std::string source = "assembly.shapes.source";
   const std::string file = "assembly.shapes.file";
   const std::string outlines = "assembly.shapes.outlines";
-  const auto overridden = [&keys](const std::string& path) { return keys.where(path).rfind("--set ", 0) == 0; };
+  const auto overridden = [&keys](const std::string& path) { return on_command_line(keys, path); };
   // A file named on the command line alone replaces what the scene has.
   const bool new_file = overridden(file) && !overridden(source) && !overridden(outlines) && !shapes.file.empty();
   if (new_file) {
@@ -305,6 +332,40 @@ void resolve_shapes(Specification& keys, ShapeOptions& shapes) {
   }
 }
 
+// Reads the grading's file; the diameters become the ends of the curve.
+void resolve_grading(Specification& keys, AssemblyOptions& assembly) {
+  const std::string path = "assembly.grading";
+  if (!assembly.grading_file.empty()) {
+    try {
+      assembly.grading = read_grading_file(assembly.grading_file);
+    } catch (const Error& error) {
+      keys.fail({path}, path + ": " + error.what());
+    }
+  }
+  if (assembly.grading.empty()) return;
+  const auto settle = [&](const char* key, double& value, double end, const char* which) {
+    // A curve on the command line alone replaces the diameters of the scene.
+    const bool replaced = on_command_line(keys, path) && !on_command_line(keys, key);
+    if (keys.given(key) && !replaced && value != end) {
+      keys.fail({key}, std::string(key) + ": found " + print_number(value) + ", expected " + print_number(end) +
+                           ", the " + which + " diameter of assembly.grading, or no such key [m]");
+    }
+    value = end;
+  };
+  settle("assembly.diameter_min", assembly.diameter_min, assembly.grading.front().diameter, "smallest");
+  settle("assembly.diameter_max", assembly.diameter_max, assembly.grading.back().diameter, "largest");
+
+  const double ratio = assembly.diameter_max / assembly.mean_diameter();
+  const double enough = std::ceil(ratio * ratio / kLargestShare);
+  if (assembly.particles < enough) {
+    keys.fail({"assembly.particles", path},
+              "assembly.particles: found " + std::to_string(assembly.particles) + ", expected at least " +
+                  std::to_string(static_cast<std::int64_t>(enough)) +
+                  " for this assembly.grading, so that one particle of the largest diameter is at most a tenth of the "
+                  "mass");
+  }
+}
+
 void check_between_keys(Specification& keys, const Scene& scene) {
   const AssemblyOptions& assembly = scene.assembly;
   if (assembly.diameter_min > assembly.diameter_max) {
@@ -321,6 +382,10 @@ void check_between_keys(Specification& keys, const Scene& scene) {
 
 }  // namespace
 
+double AssemblyOptions::mean_diameter() const {
+  return grading.empty() ? 0.5 * (diameter_min + diameter_max) : diameter_of_mean_area(grading);
+}
+
 Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) {
   Scene scene;
   scene.file = file;
@@ -330,7 +395,9 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) 
   keys.finish();
   scene.preparation.from = absolute_name(keys, "preparation.from", scene.preparation.from, file);
   scene.assembly.shapes.file = absolute_name(keys, "assembly.shapes.file", scene.assembly.shapes.file, file);
+  scene.assembly.grading_file = absolute_name(keys, "assembly.grading", scene.assembly.grading_file, file);
   resolve_shapes(keys, scene.assembly.shapes);
+  resolve_grading(keys, scene.assembly);
   check_between_keys(keys, scene);
   keys.finish();
   return scene;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/grading.hpp"
 #include "common/config/specification.hpp"
 #include "common/geometry/polygon.hpp"
 #include "common/io/immutable_file.hpp"
@@ -48,9 +49,14 @@ struct ShapeOptions {
 
 struct AssemblyOptions {
   int particles = 1194;
-  double diameter_min = 0.37;  ///< longest distance between two vertices [m]
+  double diameter_min = 0.37;  ///< longest distance between two vertices [m]; with a grading its ends
   double diameter_max = 0.57;
+  Grading grading;           ///< empty: diameters uniform, by number, between the two (read_scene reads the file)
+  std::string grading_file;  ///< where the grading was read; absolute; empty: from nowhere
   ShapeOptions shapes;
+
+  /// Mean of the two diameters [m]; with a grading, diameter of the mean area.
+  double mean_diameter() const;
 };
 
 enum class ContactLaw { mean_depth, area, potential, foundation };
@@ -162,7 +168,7 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides =
 std::string to_yaml(const Scene& scene);
 
 /// Hex XXH3-128 over the resolved keys that the executable (dem or xfem) uses; never `output`, threads or file names:
-/// of `assembly.shapes.file` the outlines count, and the frame named by `preparation.from` records its own
+/// of files of outlines and gradings the content counts, and the frame named by `preparation.from` records its own
 /// configuration.
 std::string config_hash(const Scene& scene, UsedBy executable);
 

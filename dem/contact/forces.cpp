@@ -219,7 +219,7 @@ ContactKernel select_contact_kernel(common::ContactLaw law, const common::Effect
 ContactConstants contact_constants(const common::Scene& scene) {
   ContactConstants c;
   c.normal_stiffness = scene.contact.normal_stiffness;
-  c.length = 0.5 * (scene.assembly.diameter_min + scene.assembly.diameter_max);
+  c.length = scene.assembly.mean_diameter();
   const double stiffness =
       common::stiffness_is_per_area(scene.contact.law) ? 0.2 * c.normal_stiffness * c.length : c.normal_stiffness;
   c.tangential_stiffness = scene.contact.tangential_stiffness.value_or(stiffness);

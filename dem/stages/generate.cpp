@@ -205,10 +205,15 @@ Particles generate_assembly(const common::AssemblyOptions& options, double densi
   common::Random random(seed);
   const std::vector<Polygon> types = make_shape_types(options.shapes, random);
   std::vector<Draft> drafts(static_cast<std::size_t>(options.particles));
-  for (Draft& draft : drafts) {
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    Draft& draft = drafts[i];
     draft.type = static_cast<std::int32_t>(random.index(types.size()));
     draft.body = types[static_cast<std::size_t>(draft.type)];
-    const double diameter = random.uniform(options.diameter_min, options.diameter_max);
+    // One particle in each of equal shares of the counted distribution: a few large ones make much of the mass.
+    const double diameter =
+        options.grading.empty()
+            ? random.uniform(options.diameter_min, options.diameter_max)
+            : common::diameter_at(options.grading, (static_cast<double>(i) + random.uniform()) / options.particles);
     draft.angle = random.uniform(0, kTwoPi);
     for (Vec2& vertex : draft.body) vertex *= diameter;
     draft.area = common::area(draft.body);

@@ -19,12 +19,12 @@ namespace dem {
 /// Throws bad_input for a non-convex or degenerate outline, naming it, and for options out of range.
 std::vector<Polygon> make_shape_types(const common::ShapeOptions& options, common::Random& random);
 
-/// `options.particles` polygons, diameters uniform in [diameter_min, diameter_max], random type, orientation and place,
-/// without overlap in a circle that is as small as random placement allows (solids fill about half of it); centred at
-/// the origin, at rest. Types, diameters and orientations are drawn first, then places from the largest to the
-/// smallest, each by at most 10,000 trials; the circle grows by 2 % and placing begins anew when one finds no room. The
-/// ids count from 0 along Hilbert's curve through the places, so that neighbours in space are neighbours in memory. A
-/// function of the options and the seed alone.
+/// `options.particles` polygons, diameters uniform in [diameter_min, diameter_max] or after the grading, random type,
+/// orientation and place, without overlap in a circle that is as small as random placement allows (solids fill about
+/// half of it); centred at the origin, at rest. Types, diameters and orientations are drawn first, then places from the
+/// largest to the smallest, each by at most 10,000 trials; the circle grows by 2 % and placing begins anew when one
+/// finds no room. The ids count from 0 along Hilbert's curve through the places, so that neighbours in space are
+/// neighbours in memory. A function of the options and the seed alone.
 Particles generate_assembly(const common::AssemblyOptions& options, double density, std::uint64_t seed);
 
 }  // namespace dem

@@ -118,8 +118,8 @@ TEST_CASE("A file of outlines is checked with its lines") {
         "d.csv: found a directory, expected a file of outlines");
   CHECK(error("o.csv", "") == place + "o.csv: the file has no outlines, expected rows of type,x,y");
   CHECK(error("o.csv", "type,x,y\n0,0,0\n0,a,0\n") ==
-        place + "o.csv:3: found \"0,a,0\", expected type,x,y with two numbers");
-  CHECK(error("o.csv", "0,0,0\n0,1\n") == place + "o.csv:2: found \"0,1\", expected type,x,y with two numbers");
+        place + "o.csv:3: found \"0,a,0\", expected type,x,y with 2 numbers");
+  CHECK(error("o.csv", "0,0,0\n0,1\n") == place + "o.csv:2: found \"0,1\", expected type,x,y with 2 numbers");
   CHECK_THAT(error("o.csv", "0,0,0\n0,1,0\n0,0,1\n1,0,0\n1,2,0\n1,1,0.1\n1,1,1\n"),
              StartsWith(place + "o.csv:4: outlines: outline 1 (counted from 0): ") && Contains("vertex 2"));
   CHECK(error("o.yaml", "[]") == place + "o.yaml: the list is empty, expected at least one outline");

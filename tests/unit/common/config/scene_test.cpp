@@ -37,6 +37,7 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
       {"assembly.particles", "1195"},
       {"assembly.diameter_min", "0.36"},
       {"assembly.diameter_max", "0.58"},
+      {"assembly.grading", "[[0.37, 0], [0.57, 1]]"},
       {"assembly.shapes.types", "13"},
       {"assembly.shapes.corners_min", "4"},
       {"assembly.shapes.corners_max", "9"},

@@ -140,6 +140,41 @@ TEST_CASE("one particle, equal sizes and sizes of 10 to 1 can be placed") {
   CHECK(dem::generate_assembly(options, 2500, 1).size() == 200);
 }
 
+TEST_CASE("the sizes of an assembly follow its grading curve") {
+  // Smooth, five times from end to end; with a gap between two ranges; two sizes only.
+  const std::vector<common::Grading> curves{{{0.1, 0}, {0.2, 0.25}, {0.3, 0.65}, {0.5, 1}},
+                                            {{0.2, 0}, {0.25, 0.4}, {0.5, 0.4}, {0.6, 1}},
+                                            {{0.2, 0}, {0.2, 0.3}, {0.5, 0.3}, {0.5, 1}}};
+  const auto wanted = [](const common::Grading& curve, double d) {
+    double passing = 0;
+    for (std::size_t k = 1; k < curve.size(); ++k) {
+      const auto& [from, below] = curve[k - 1];
+      const auto& [to, above] = curve[k];
+      if (d >= to) passing = above;
+      if (d > from && d < to) passing = below + (above - below) * (d - from) / (to - from);
+    }
+    return passing;
+  };
+  for (const common::Grading& curve : curves) {
+    auto options = assembly(1500);
+    options.grading = curve;
+    for (const std::uint64_t seed : {1u, 2u}) {
+      const auto particles = dem::generate_assembly(options, 2500, seed);
+      double all = 0;
+      for (const double area : particles.area) all += area;
+      for (int step = 0; step <= 60; ++step) {
+        const double d = 0.1 + 0.01 * step + 0.001;  // off the two sizes
+        double finer = 0;
+        for (std::size_t i = 0; i < particles.size(); ++i) {
+          if (common::diameter(particles.outline(i)) <= d) finer += particles.area[i];
+        }
+        // Areas of the shapes scatter about d^2; the sizes alone would give 0.004.
+        CHECK(finer / all == Approx(wanted(curve, d)).margin(0.02));
+      }
+    }
+  }
+}
+
 TEST_CASE("given outlines are scaled, centred and turned counter-clockwise") {
   common::ShapeOptions options;
   options.source = "outlines";
