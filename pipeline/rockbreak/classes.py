@@ -59,10 +59,17 @@ def particle_stresses(position, area, a, b, point, force):
     return np.column_stack([stress[:, 0, 0], stress[:, 1, 1], 0.5 * (stress[:, 0, 1] + stress[:, 1, 0])])
 
 
-def first_two_contacts(count, a, b):
-    """Rows of the first two contacts of each of `count` particles, count x 2; -1 where there are fewer."""
+def two_contacts(count, a, b):
+    """Rows of two contacts of each of `count` particles, count x 2; -1 where there are fewer.
+
+    Any two: those first in an order scrambled from the numbers of the particles. Numbers follow places (dem), so that
+    the contacts first by number would lie side by side.
+    """
+    mixed = (a.astype(np.uint64) << np.uint64(32)) + b.astype(np.uint64)
+    for shift in (30, 27, 31):  # multiply and shift, modulo 2^64: every bit reaches every other
+        mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(0xbf58476d1ce4e5b9)
     particle, contact = np.concatenate([a, b]), np.tile(np.arange(len(a)), 2)
-    order = np.lexsort((contact, particle))
+    order = np.lexsort((np.tile(mixed, 2), particle))
     particle, contact = particle[order], contact[order]
     begin, end = np.searchsorted(particle, np.arange(count)), np.searchsorted(particle, np.arange(count), side="right")
     found = np.full((count, 2), -1)
@@ -115,6 +122,6 @@ def read_contact_state(path):
         a, b = np.searchsorted(ids, contacts["a"][:]), np.searchsorted(ids, contacts["b"][:])
         point = contacts["point"][:]
         virial = particle_stresses(particles["position"][:], particles["area"][:], a, b, point, contacts["force"][:])
-        held = held_stresses(virial, first_two_contacts(len(ids), a, b), point) if len(a) else virial
+        held = held_stresses(virial, two_contacts(len(ids), a, b), point) if len(a) else virial
         return ContactState(normal_force=contacts["normal_force"][:], stress={"virial": virial, "held": held},
                             displacement=particles["displacement"][:])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import synthetic
-from rockbreak.classes import (STRESS_LIMITS, first_two_contacts, force_classes, held_stresses, large_displacements,
-                               particle_stresses, read_contact_state, stress_classes)
+from rockbreak.classes import (STRESS_LIMITS, force_classes, held_stresses, large_displacements, particle_stresses,
+                               read_contact_state, stress_classes, two_contacts)
 
 
 def test_forces_at_a_threshold_are_moderate_and_unloaded_contacts_do_not_count():
@@ -62,9 +62,21 @@ def test_the_volume_average_of_particle_stresses_is_the_stress_of_the_assembly()
     assert area @ found == pytest.approx(expected, rel=1e-9)
 
 
-def test_supports_are_the_first_two_contacts_of_a_particle_as_a_or_as_b():
-    found = first_two_contacts(4, np.array([0, 0, 1, 0]), np.array([1, 2, 2, 3]))
-    assert found.tolist() == [[0, 1], [0, 2], [1, 2], [3, -1]]
+def test_supports_are_two_contacts_of_the_particle_as_a_or_as_b():
+    a, b = np.array([0, 0, 1, 0]), np.array([1, 2, 2, 3])
+    found = two_contacts(5, a, b)
+    for particle, contacts in enumerate([{0, 1, 3}, {0, 2}, {1, 2}]):
+        assert found[particle, 0] != found[particle, 1] and set(found[particle]) <= contacts
+    assert found[3:].tolist() == [[3, -1], [-1, -1]]
+
+
+def test_which_contacts_support_a_particle_does_not_follow_the_numbers_of_its_neighbours():
+    """Six neighbours around each particle, numbered in turn: two of six at random are side by side in 6 of 15."""
+    particles = np.arange(0, 70000, 7)
+    a, b = np.repeat(particles, 6), np.arange(70000)[np.arange(70000) % 7 > 0]
+    found = two_contacts(70000, a, b)[particles]
+    apart = np.abs(found[:, 0] - found[:, 1])
+    assert np.mean((apart == 1) | (apart == 5)) == pytest.approx(0.4, abs=0.02)
 
 
 def test_a_column_held_at_both_ends_carries_no_stress_and_one_held_across_gains_what_poisson_would_have_spread():
