@@ -95,13 +95,13 @@ TEST_CASE("with every effect at once the ledger closes, and no contact exceeds i
   }
 }
 
-TEST_CASE("with every effect at once a resumed engine goes on bit for bit, and a frame has what the effects need") {
+TEST_CASE("with every effect at once a resumed engine goes on bit for bit, on three threads as on one") {
   const common::Scene scene = full_scene(ContactLaw::area);
   dem::Engine engine = pile(scene);
   for (int k = 0; k < 200; ++k) engine.step({-0.1, 0.2});
   common::Frame frame = dem::to_frame(engine.state(), scene, common::Stage::shear);
   REQUIRE(frame.contacts.rolling_moment.has_value());
-  dem::Engine resumed(scene, dem::to_state(frame));
+  dem::Engine resumed(scene, dem::to_state(frame), 3);
   engine.restart();
   for (int k = 0; k < 200; ++k) {
     engine.step({-0.1, 0.2});
