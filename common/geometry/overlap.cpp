@@ -23,6 +23,7 @@ constexpr int kLanes = 2;
 using Two = double __attribute__((vector_size(2 * sizeof(double))));
 using Wide = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Masks = long long __attribute__((vector_size(kLanes * sizeof(double))));
+using Loose = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(sizeof(double))));
 using Set = std::uint64_t;  ///< of vertices
 
 constexpr int kMaxFast = 64;
@@ -61,14 +62,17 @@ struct Line {
   double height(double px, double py) const { return dx * (py - y) - dy * (px - x); }
 };
 
-inline int next(const OutlineView& p, int i) {
-  return i + 1 < p.size ? i + 1 : 0;
+inline unsigned size(const OutlineView& p) {
+  return static_cast<unsigned>(p.size);
 }
-inline int previous(const OutlineView& p, int i) {
-  return i > 0 ? i - 1 : p.size - 1;
+inline unsigned next(const OutlineView& p, unsigned i) {
+  return i + 1 < size(p) ? i + 1 : 0;
 }
-inline Line edge_line(const OutlineView& p, int i) {
-  const int j = next(p, i);
+inline unsigned previous(const OutlineView& p, unsigned i) {
+  return i > 0 ? i - 1 : size(p) - 1;
+}
+inline Line edge_line(const OutlineView& p, unsigned i) {
+  const unsigned j = next(p, i);
   return {p.x[i], p.y[i], p.x[j] - p.x[i], p.y[j] - p.y[i]};
 }
 
@@ -83,13 +87,23 @@ template <int kPadded>
   return set;
 }
 
+/// True if no vertex is on the inner side of a line.
+template <int kPadded>
+[[gnu::always_inline]] inline bool separates(const Line& line, const OutlineView& p) {
+  Masks set{};
+  for (int i = 0; i < padded<kPadded>(p); i += kLanes) {
+    set |= Masks(line.dy * (wide(p.x + i) - line.x) - line.dx * (wide(p.y + i) - line.y));
+  }
+  return signs(Wide(set)) == 0;
+}
+
 /// The vertices i+1, ... that follow those from i on; the first one follows the last one.
 [[gnu::always_inline]] inline Wide successors(const double* p, int i, int padded) {
-  const int j = i + kLanes < padded ? i + kLanes : 0;
+  if (i + kLanes < padded) return *reinterpret_cast<const Loose*>(p + i + 1);
 #ifdef __AVX__
-  return __builtin_shufflevector(wide(p + i), wide(p + j), 1, 2, 3, 4);
+  return __builtin_shufflevector(wide(p + i), wide(p), 1, 2, 3, 4);
 #else
-  return __builtin_shufflevector(wide(p + i), wide(p + j), 1, 2);
+  return __builtin_shufflevector(wide(p + i), wide(p), 1, 2);
 #endif
 }
 
@@ -107,24 +121,15 @@ template <int kPadded>
   return signs(Wide(outside)) == 0;
 }
 
-/// Vertices `first` to `last` of an outline.
-struct Run {
-  int first;
-  int last;
+/// Two crossings: where q's boundary enters and leaves p.
+struct Crossings {
+  unsigned entry;  ///< edge of p; kNone: not found
+  unsigned exit;
+  unsigned first;  ///< vertices of q in between
+  unsigned last;
 };
-
-/// A set that is one run around an outline of n vertices; first = -1 if it is not.
-inline Run run_of(Set set, int n) {
-  if ((set & (set - 1)) == 0) {
-    const int i = std::countr_zero(set);
-    return {set != 0 ? i : -1, i};
-  }
-  const Set turned = ((set << 1) | (set >> (n - 1))) & all(n);
-  const Set starts = set & ~turned;
-  if (starts == 0 || (starts & (starts - 1)) != 0) return {-1, -1};
-  const Set ends = set & ~((set >> 1) | (set << (n - 1)));
-  return {std::countr_zero(starts), std::countr_zero(ends)};
-}
+constexpr unsigned kNone = kMaxFast;
+constexpr Crossings kNotFound{kNone, kNone, kNone, kNone};
 
 /// The triangles between the first crossing (x, y) and the sides of the overlap, one after the other; vertices and
 /// crossings relative to a near origin.
@@ -144,9 +149,10 @@ class Fan {
     uy_ = vy;
   }
 
-  /// False, and nothing is set, if a triangle is turned over: then rounding has put a crossing beyond a vertex.
-  /// sign: 1 if the second crossing lies ahead along b's boundary.
-  bool measure(const Line& origin, double second_x, double second_y, double sign, Overlap& result) const {
+  /// sign: 1 if the second crossing lies ahead along b's boundary. False, and nothing is set, if a triangle is turned
+  /// over, which rounding does where the overlap is as thin.
+  [[gnu::always_inline]] bool measure(double origin_x, double origin_y, double second_x, double second_y, double sign,
+                                      Overlap& result) const {
     const double cx = second_x - x_;
     const double cy = second_y - y_;
     const double area = 0.5 * sum_;
@@ -158,8 +164,8 @@ class Fan {
     result.area = area;
     result.width = square > area ? length : std::sqrt(area);
     result.normal = {-cy * unit, cx * unit};
-    result.centroid = {origin.x + (x_ + moment_x_ * third), origin.y + (y_ + moment_y_ * third)};
-    result.chord_midpoint = {origin.x + (x_ + 0.5 * cx), origin.y + (y_ + 0.5 * cy)};
+    result.centroid = {origin_x + (x_ + moment_x_ * third), origin_y + (y_ + moment_y_ * third)};
+    result.chord_midpoint = {origin_x + (x_ + 0.5 * cx), origin_y + (y_ + 0.5 * cy)};
     result.crossings = 2;
     return true;
   }
@@ -171,156 +177,123 @@ class Fan {
   bool convex_ = true;
 };
 
-/// The overlap of p and q if q enters and leaves p through edge e, and all its vertices inside that edge, `seen`, are
-/// inside p. sign: 1 if p is a, -1 if it is b.
-template <int kPadded>
-[[gnu::always_inline]] inline bool poke(const OutlineView& p, const OutlineView& q, int e, const Line& edge, Set seen,
-                                        double sign, Overlap& result) {
-  const auto [k, l] = run_of(seen, q.size);
-  if (k < 0) return false;
-  const int before = previous(q, k);
-  const int after = next(q, l);
-  const int end = next(p, e);
-  // Heights of the edge's ends over q's edges: entering and leaving side by side.
-  const Two x{q.x[before], q.x[l]};
-  const Two y{q.y[before], q.y[l]};
-  const Two dx = Two{q.x[k], q.x[after]} - x;
-  const Two dy = Two{q.y[k], q.y[after]} - y;
-  const Two from = dx * (edge.y - y) - dy * (edge.x - x);
-  const Two to = dx * (p.y[end] - y) - dy * (p.x[end] - x);
-  if (signs(from) != 2 || signs(to) != 1) return false;
-  for (int i = k;; i = next(q, i)) {
-    if (!inside<kPadded>(p, q.x[i], q.y[i])) return false;
+/// The vertices of the overlap polygon; the crossings are relative to the start of edge `entry`. Where p is a.
+[[gnu::noinline]] void write(const OutlineView& p, const OutlineView& q, const Crossings& crossings, const Vec2& enters,
+                             const Vec2& leaves, OverlapOutline& outline) {
+  const Vec2 start = p[static_cast<int>(crossings.entry)];
+  int n = 0;
+  const auto add = [&](const Vec2& vertex) {
+    outline.x[n] = vertex.x() - enters.x();
+    outline.y[n] = vertex.y() - enters.y();
+    ++n;
+  };
+  outline.origin = start + enters;
+  add(enters);
+  for (unsigned i = crossings.first;; i = next(q, i)) {
+    add(q[static_cast<int>(i)] - start);
+    if (i == crossings.last) break;
+  }
+  outline.first_a = n;
+  add(leaves);
+  for (unsigned i = crossings.exit; i != crossings.entry;) {
+    i = next(p, i);
+    add(p[static_cast<int>(i)] - start);
+  }
+  outline.size = n;
+}
+
+/// The overlap of p and q if it is bounded by the two crossings. sign: 1 if p is a, -1 if it is b.
+/// `otherwise()` if it is not.
+template <int kPadded, class Otherwise>
+[[gnu::always_inline]] inline void measure(const OutlineView& p, const OutlineView& q, const Crossings& crossings,
+                                           double sign, Overlap& result, OverlapOutline* outline,
+                                           const Otherwise& otherwise) {
+  const auto [j1, j2, k, l] = crossings;
+  for (unsigned i = k;; i = next(q, i)) {
+    if (!inside<kPadded>(p, q.x[i], q.y[i])) return otherwise();
     if (i == l) break;
   }
+  for (unsigned i = j2; i != j1;) {
+    i = next(p, i);
+    if (!inside<kPadded>(q, p.x[i], p.y[i])) return otherwise();
+  }
+  const unsigned before = previous(q, k);
+  const unsigned after = next(q, l);
+  const unsigned end1 = next(p, j1);
+  const unsigned end2 = next(p, j2);
+  // Entry and exit side by side: q's edges, p's edges, heights of the ends of p's edges over q's.
+  const Two qx{q.x[before], q.x[l]};
+  const Two qy{q.y[before], q.y[l]};
+  const Two qdx = Two{q.x[k], q.x[after]} - qx;
+  const Two qdy = Two{q.y[k], q.y[after]} - qy;
+  const Two px{p.x[j1], p.x[j2]};
+  const Two py{p.y[j1], p.y[j2]};
+  const Two ends_x{p.x[end1], p.x[end2]};
+  const Two ends_y{p.y[end1], p.y[end2]};
+  const Two rx = px - qx;
+  const Two ry = py - qy;
+  const Two from = qdx * ry - qdy * rx;
+  const Two to = qdx * (ends_y - qy) - qdy * (ends_x - qx);
+  if ((signs(from) ^ 2) | (signs(to) ^ 1)) return otherwise();
   const Two t = from / (from - to);
-  const Two cx = t * edge.dx;
-  const Two cy = t * edge.dy;
-  const Two along = (cx - (x - edge.x)) * dx + (cy - (y - edge.y)) * dy;
-  const Two ahead = dx * dx + dy * dy - along;
-  if ((signs(along) | signs(ahead)) != 0) return false;
-  Fan fan(cx[0], cy[0], q.x[k] - edge.x, q.y[k] - edge.y);
-  for (int i = k; i != l;) {
+  const Two tx = t * (ends_x - px);
+  const Two ty = t * (ends_y - py);
+  // Nearly parallel edges cross at an uncertain place, which may be beyond the end of q's edge.
+  const Two along = (rx + tx) * qdx + (ry + ty) * qdy;
+  const Two ahead = qdx * qdx + qdy * qdy - along;
+  if ((signs(along) | signs(ahead)) != 0) return otherwise();
+  const double ox = px[0];
+  const double oy = py[0];
+  const double x2 = (px[1] - ox) + tx[1];
+  const double y2 = (py[1] - oy) + ty[1];
+  Fan fan(tx[0], ty[0], q.x[k] - ox, q.y[k] - oy);
+  for (unsigned i = k; i != l;) {
     i = next(q, i);
-    fan.add(q.x[i] - edge.x, q.y[i] - edge.y);
-  }
-  fan.add(cx[1], cy[1]);
-  return fan.measure(edge, cx[1], cy[1], sign, result);
-}
-
-/// True if the point, relative to `origin`, lies between the ends of an edge. Nearly parallel edges cross at an
-/// uncertain place, which may be beyond.
-inline bool within(const Line& edge, const Line& origin, double x, double y) {
-  const double along = (x - (edge.x - origin.x)) * edge.dx + (y - (edge.y - origin.y)) * edge.dy;
-  return along >= 0 && along <= edge.dx * edge.dx + edge.dy * edge.dy;
-}
-
-/// Adds vertices to an outline, relative to its first one.
-class OutlineWriter {
- public:
-  /// `origin` and, relative to it, the first vertex.
-  OutlineWriter(OverlapOutline& outline, const Vec2& origin, const Vec2& first) : outline_(outline), first_(first) {
-    outline.origin = origin + first;
-    outline.x[0] = outline.y[0] = 0;
-    outline.size = 1;
-  }
-  void add(double x, double y) {
-    outline_.x[outline_.size] = x - first_.x();
-    outline_.y[outline_.size] = y - first_.y();
-    ++outline_.size;
-  }
-
- private:
-  OverlapOutline& outline_;
-  Vec2 first_;
-};
-
-/// What `follow` found; the edges of p at the crossings.
-struct Found {
-  int entry = -1;  ///< -1: not two plain crossings
-  int exit = -1;
-};
-
-/// The overlap of p and q if it is bounded by two proper crossings, `seen` being q's vertices inside edge e of p.
-template <int kPadded>
-Found follow(const OutlineView& p, const OutlineView& q, int e, Set seen, double sign, Overlap& result,
-             OverlapOutline* outline) {
-  Set in = 0;
-  for (Set rest = seen; rest; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
-    if (inside<kPadded>(p, q.x[i], q.y[i])) in |= Set{1} << i;
-  }
-  const auto [k, l] = run_of(in, q.size);
-  if (k < 0) return {};
-
-  // q's boundary enters p across edge j1 ...
-  const int before = previous(q, k);
-  const Line entering = edge_line(q, before);
-  int j1 = e;
-  double from1, to1;
-  for (int move = 0;; ++move) {
-    const int n = next(p, j1);
-    from1 = entering.height(p.x[j1], p.y[j1]);
-    to1 = entering.height(p.x[n], p.y[n]);
-    if (from1 > 0 && to1 < 0) break;
-    if (move == p.size) return {};
-    j1 = to1 < 0 ? previous(p, j1) : n;
-  }
-  const Line edge1 = edge_line(p, j1);
-  if (edge1.height(q.x[before], q.y[before]) > 0) return {};
-  // ... and leaves it across edge j2
-  const int after = next(q, l);
-  const Line leaving = edge_line(q, l);
-  int j2 = e;
-  double from2, to2;
-  for (int move = 0;; ++move) {
-    const int n = next(p, j2);
-    from2 = leaving.height(p.x[j2], p.y[j2]);
-    to2 = leaving.height(p.x[n], p.y[n]);
-    if (from2 < 0 && to2 > 0) break;
-    if (move == p.size) return {};
-    j2 = to2 > 0 ? previous(p, j2) : n;
-  }
-  const Line edge2 = edge_line(p, j2);
-  if (edge2.height(q.x[after], q.y[after]) > 0) return {};
-
-  const double t1 = from1 / (from1 - to1);
-  const double t2 = from2 / (from2 - to2);
-  const double x1 = t1 * edge1.dx;
-  const double y1 = t1 * edge1.dy;
-  const double x2 = (edge2.x - edge1.x) + t2 * edge2.dx;
-  const double y2 = (edge2.y - edge1.y) + t2 * edge2.dy;
-  if (!within(entering, edge1, x1, y1) || !within(leaving, edge1, x2, y2)) return {};
-  Fan fan(x1, y1, q.x[k] - edge1.x, q.y[k] - edge1.y);
-  for (int i = k; i != l;) {
-    i = next(q, i);
-    fan.add(q.x[i] - edge1.x, q.y[i] - edge1.y);
+    fan.add(q.x[i] - ox, q.y[i] - oy);
   }
   fan.add(x2, y2);
-  for (int i = j2; i != j1;) {
+  for (unsigned i = j2; i != j1;) {
     i = next(p, i);
-    if (!inside<kPadded>(q, p.x[i], p.y[i])) return {};
-    fan.add(p.x[i] - edge1.x, p.y[i] - edge1.y);
+    fan.add(p.x[i] - ox, p.y[i] - oy);
   }
-  if (!fan.measure(edge1, x2, y2, sign, result)) return {};
-  if (outline && j1 != j2 && sign > 0) {
-    OutlineWriter writer(*outline, {edge1.x, edge1.y}, {x1, y1});
-    for (int i = k;; i = next(q, i)) {
-      writer.add(q.x[i] - edge1.x, q.y[i] - edge1.y);
-      if (i == l) break;
-    }
-    outline->first_a = outline->size;
-    writer.add(x2, y2);
-    for (int i = j2; i != j1;) {
-      i = next(p, i);
-      writer.add(p.x[i] - edge1.x, p.y[i] - edge1.y);
-    }
+  if (!fan.measure(ox, oy, x2, y2, sign, result)) return otherwise();
+  if (j1 != j2 && outline) write(p, q, crossings, {tx[0], ty[0]}, {x2, y2}, *outline);
+}
+
+/// Follows the boundaries from edge e of p to the two crossings.
+template <int kPadded>
+Crossings follow(const OutlineView& p, const OutlineView& q, unsigned e) {
+  const Set every = ~Set{0} >> (64 - q.size);
+  Set in = 0;
+  for (Set rest = above<kPadded>(q, edge_line(p, e)) & every; rest; rest &= rest - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(rest));
+    if (inside<kPadded>(p, q.x[i], q.y[i])) in |= Set{1} << i;
   }
-  return {j1, j2};
+  const Set starts = in & ~(in << 1 | in >> (q.size - 1));
+  const Set ends = in & ~(in >> 1 | (in & 1) << (q.size - 1));
+  if (!std::has_single_bit(starts)) return kNotFound;
+  const auto first = static_cast<unsigned>(std::countr_zero(starts));
+  const auto last = static_cast<unsigned>(std::countr_zero(ends));
+  // side 1: q's boundary enters p, p's leaves q; side -1: the other way round
+  const auto crossing = [&](unsigned i, double side) {
+    const Line line = edge_line(q, i);
+    unsigned j = e;
+    for (int moves = 0; moves <= p.size; ++moves) {
+      const unsigned n = next(p, j);
+      const double from = side * line.height(p.x[j], p.y[j]);
+      const double to = side * line.height(p.x[n], p.y[n]);
+      if (from > 0 && to < 0) return j;
+      j = to < 0 ? previous(p, j) : n;
+    }
+    return kNone;
+  };
+  const unsigned entry = crossing(previous(q, first), 1);
+  const unsigned exit = crossing(last, -1);
+  return entry != kNone && exit != kNone ? Crossings{entry, exit, first, last} : kNotFound;
 }
 
 struct Best {
-  int edge;
+  unsigned edge;
   double value;    ///< signed square of the distance that q reaches inside
   double highest;  ///< <= 0: the edge separates
 };
@@ -342,86 +315,98 @@ Best best_edge(const OutlineView& p, const OutlineView& q) {
     const Wide size = high < 0.0 ? -high : high;
     const Wide value = high * size / square;
     for (int lane = 0; lane < kLanes; ++lane) {
-      if (square[lane] > 0 && value[lane] < best.value) best = {i + lane, value[lane], high[lane]};
+      if (square[lane] > 0 && value[lane] < best.value)
+        best = {static_cast<unsigned>(i + lane), value[lane], high[lane]};
     }
   }
-  if (best.edge >= p.size) best.edge = p.size - 1;  // the closing edge starts from the padding
+  if (best.edge >= size(p)) best.edge = size(p) - 1;  // the closing edge starts from the padding
   return best;
 }
 
-inline PairFeature feature_of(bool is_b, int edge) {
-  return {static_cast<std::uint8_t>(is_b ? 2 : 1), static_cast<std::uint8_t>(edge)};
+inline PairFeature touching(bool of_b, const Crossings& c) {
+  return {static_cast<std::uint8_t>(c.entry + (of_b ? PairFeature::kOfB : 0u)), static_cast<std::uint8_t>(c.exit + 1),
+          static_cast<std::uint8_t>(c.first), static_cast<std::uint8_t>(c.last)};
+}
+inline PairFeature separating(bool of_b, unsigned edge) {
+  return {static_cast<std::uint8_t>(edge + (of_b ? PairFeature::kOfB : 0u)), 0, 0, 0};
+}
+inline bool is_of_b(const PairFeature& feature) {
+  return feature.edge >= PairFeature::kOfB;
+}
+inline unsigned edge_of(const PairFeature& feature) {
+  return feature.edge % PairFeature::kOfB;
 }
 
-/// Nothing known helped: looks at all edges.
+[[gnu::noinline]] void clip(const OutlineView& a, const OutlineView& b, Overlap& result, OverlapOutline* outline) {
+  result = clip_overlap(a, b, outline);
+}
+
+/// What was known did not help: looks at all edges.
 template <int kPadded>
 [[gnu::noinline]] void search(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result,
                               OverlapOutline* outline) {
   const Best of_a = best_edge(a, b);
   const Best of_b = best_edge(b, a);
-  const bool is_b = of_b.value < of_a.value;
-  const Best& best = is_b ? of_b : of_a;
-  feature = feature_of(is_b, best.edge);
+  const bool best_of_b = of_b.value < of_a.value;
+  const Best& best = best_of_b ? of_b : of_a;
+  feature = separating(best_of_b, best.edge);
   if (best.highest <= 0) return;
-  const auto found = [&](const OutlineView& p, const OutlineView& q, int edge, double sign) {
-    const Set seen = above<kPadded>(q, edge_line(p, edge)) & all(q.size);
-    return follow<kPadded>(p, q, edge, seen, sign, result, outline);
+  const auto clipped = [&] {
+    feature = separating(best_of_b, best.edge);
+    clip(a, b, result, outline);
   };
-  if (is_b) {
-    const Found of = found(b, a, best.edge, -1);
-    if (of.entry >= 0 && of.entry == of.exit) {
-      feature = feature_of(true, of.entry);
-      return;
-    }
-  }
-  // Two edges of either polygon are cut: it is a's that are followed, so that the result has one form only.
-  const Found of = found(a, b, of_a.edge, 1);
-  if (of.entry >= 0) {
-    feature = feature_of(false, of.entry == of_a.edge || of.exit == of_a.edge ? of_a.edge : of.entry);
-  } else {
-    result = clip_overlap(a, b, outline);
-  }
+  const auto along_a = [&] {
+    const Crossings found = follow<kPadded>(a, b, of_a.edge);
+    if (found.entry == kNone) return clipped();
+    feature = touching(false, found);
+    return measure<kPadded>(a, b, found, 1, result, outline, clipped);
+  };
+  if (!best_of_b) return along_a();
+  // Where two edges of either polygon are cut it is a's that count, so that the result has one form only.
+  const Crossings found = follow<kPadded>(b, a, best.edge);
+  if (found.entry == kNone || found.entry != found.exit) return along_a();
+  feature = touching(true, found);
+  return measure<kPadded>(b, a, found, -1, result, outline, along_a);
 }
 
-/// q has vertices inside the edge that was remembered.
+/// Two crossings are remembered.
 template <int kPadded>
-[[gnu::noinline]] void touch(const OutlineView& a, const OutlineView& b, PairFeature& feature, bool is_b, int e,
-                             Set seen, Overlap& result, OverlapOutline* outline) {
-  const OutlineView& p = is_b ? b : a;
-  const OutlineView& q = is_b ? a : b;
-  seen &= all(q.size);
-  const double sign = is_b ? -1 : 1;
-  if (poke<kPadded>(p, q, e, edge_line(p, e), seen, sign, result)) return;
-  const Found found = follow<kPadded>(p, q, e, seen, sign, result, outline);
-  if (found.entry >= 0 && (!is_b || found.entry == found.exit)) {
-    if (found.entry != e && found.exit != e) feature.edge = static_cast<std::uint8_t>(found.entry);
-    return;
-  }
-  result = Overlap{};
-  search<kPadded>(a, b, feature, result, outline);
+[[gnu::noinline]] void touch(const OutlineView& p, const OutlineView& q, PairFeature& feature, Overlap& result,
+                             OverlapOutline* outline) {
+  const bool of_b = is_of_b(feature);
+  const Crossings known{edge_of(feature), feature.exit - 1u, feature.first, feature.last};
+  const auto otherwise = [&] {
+    return of_b ? search<kPadded>(q, p, feature, result, outline) : search<kPadded>(p, q, feature, result, outline);
+  };
+  const bool valid =
+      (known.entry < size(p)) & (known.exit < size(p)) & (known.first < size(q)) & (known.last < size(q));
+  return valid ? measure<kPadded>(p, q, known, 1 - 2 * of_b, result, outline, otherwise) : otherwise();
 }
 
 template <int kPadded>
-[[gnu::always_inline]] inline Overlap start(const OutlineView& a, const OutlineView& b, PairFeature& feature,
-                                            OverlapOutline* outline) {
-  const bool is_b = feature.owner == 2;
-  const OutlineView& p = is_b ? b : a;
-  const OutlineView& q = is_b ? a : b;
-  const int e = feature.edge < p.size ? feature.edge : 0;
-  const Set seen = above<kPadded>(q, edge_line(p, e));
-  Overlap result;
-  if (seen != 0) touch<kPadded>(a, b, feature, is_b, e, seen, result, outline);
-  return result;
+[[gnu::always_inline]] inline void start(const OutlineView& a, const OutlineView& b, PairFeature& feature,
+                                         Overlap& result, OverlapOutline* outline) {
+  const bool of_b = is_of_b(feature);
+  const OutlineView& p = of_b ? b : a;
+  const OutlineView& q = of_b ? a : b;
+  if (feature.exit != 0) return touch<kPadded>(p, q, feature, result, outline);
+  const unsigned edge = edge_of(feature) < size(p) ? edge_of(feature) : 0;
+  if (!separates<kPadded>(edge_line(p, edge), q)) search<kPadded>(a, b, feature, result, outline);
+}
+
+[[gnu::noinline]] void any_size(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result,
+                                OverlapOutline* outline) {
+  if (a.size > kMaxFast || b.size > kMaxFast) return clip(a, b, result, outline);
+  start<0>(a, b, feature, result, outline);
 }
 
 }  // namespace
 
-Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
-  if (outline) outline->size = 0;
+void find_overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result,
+                  OverlapOutline* outline) {
   assert(a.size >= 3 && b.size >= 3 && a.size + b.size <= kMaxOverlapVertices);
-  if (a.padded == 8 && b.padded == 8) return start<8>(a, b, feature, outline);
-  if (a.size <= kMaxFast && b.size <= kMaxFast) return start<0>(a, b, feature, outline);
-  return clip_overlap(a, b, outline);
+  if (a.padded != 8 || b.padded != 8) return any_size(a, b, feature, result, outline);
+  start<8>(a, b, feature, result, outline);
 }
 
 Overlap overlap(PolygonView a, PolygonView b, OverlapOutline* outline) {

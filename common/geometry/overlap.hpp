@@ -26,12 +26,17 @@ struct Overlap {
   int crossings = 0;                   ///< boundary crossings: 2, 4, ...; 0 for inclusion
 };
 
-/// What the last query learned of a pair: its best separating edge, that is the edge that the other polygon passes
-/// furthest outside of, or cuts least. Zero: nothing known. Any value is allowed, also of another pair: it decides how
-/// fast the answer comes; the answer differs by rounding at most.
+/// What the last query learned of a pair: an edge that has the other polygon outside, or else which edges cross and
+/// which vertices lie between. Zero: nothing known. Any value is allowed, also of another pair: it decides how fast the
+/// answer comes; the answer differs by rounding at most.
 struct PairFeature {
-  std::uint8_t owner = 0;  ///< 1: the edge is a's, 2: it is b's, 0: not known
-  std::uint8_t edge = 0;   ///< from vertex `edge` to the next one
+  std::uint8_t edge = 0;   ///< separates, or is where the other boundary enters: from vertex `edge` to the next one; an
+                           ///< edge of a, or of b if kOfB is added
+  std::uint8_t exit = 0;   ///< 0: `edge` separates; else 1 + the edge, of the same polygon, where the other one leaves
+  std::uint8_t first = 0;  ///< first and last vertex of the other polygon inside
+  std::uint8_t last = 0;
+
+  static constexpr unsigned kOfB = 128;
 };
 
 inline constexpr int kMaxOverlapVertices = 128;
@@ -51,11 +56,23 @@ struct OverlapOutline {
   OverlapOutline() {}  // leaves its 2 KB as they are
 };
 
+/// Of `overlap`: sets `result`, until then Overlap(), if the polygons overlap, and `outline`, until then of size 0.
+void find_overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, Overlap& result,
+                  OverlapOutline* outline);
+
 /// Overlap of two convex counter-clockwise polygons, at most kMaxOverlapVertices vertices together.
 /// Never allocates, never fails: touching or separated polygons give area 0.
 /// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, if the coordinates are relative to one of the
-/// two particles. Writes `outline` if it is wanted.
-Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline = nullptr);
+/// two particles. Writes `outline` unless it is null.
+inline Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
+  Overlap result;
+  if (outline) outline->size = 0;
+  find_overlap(a, b, feature, result, outline);
+  return result;
+}
+inline Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature) {
+  return overlap(a, b, feature, nullptr);
+}
 
 /// The same of a single pair, nothing being known of it.
 Overlap overlap(PolygonView a, PolygonView b, OverlapOutline* outline = nullptr);

@@ -171,10 +171,12 @@ PairFeature feature_elsewhere(const OutlinePair& pair, Kernel kernel, Draw& draw
 }
 
 PairFeature made_up(Draw& draw, const OutlinePair& pair) {
-  PairFeature feature;
-  feature.owner = static_cast<std::uint8_t>(draw.one_in(8) ? draw.integer(0, 255) : draw.integer(1, 2));
-  feature.edge = static_cast<std::uint8_t>(draw.one_in(8) ? draw.integer(0, 255)
-                                                          : draw.integer(0, std::max(pair.a.size, pair.b.size) - 1));
+  const int most = std::max(pair.a.size, pair.b.size);
+  const auto number = [&draw](int last) {
+    return static_cast<std::uint8_t>(draw.integer(0, draw.one_in(8) ? 255 : last));
+  };
+  PairFeature feature{number(most - 1), number(most), number(most - 1), number(most - 1)};
+  if (draw.one_in(2)) feature.edge |= PairFeature::kOfB;
   return feature;
 }
 

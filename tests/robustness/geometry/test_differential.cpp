@@ -197,9 +197,8 @@ TEST_CASE("a kernel that is wrong in one respect does not pass") {
        }},
       {"a feature of another place trusted",
        [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         const bool trusted = f.owner == 2 && f.edge == 0;
-         f.owner = 2;
-         f.edge = static_cast<std::uint8_t>(b.x[0] > 0.3 ? 0 : 1);
+         const bool trusted = f.edge == PairFeature::kOfB;
+         f.edge = static_cast<std::uint8_t>(PairFeature::kOfB + (b.x[0] > 0.3 ? 0 : 1));
          PairFeature none;
          return trusted && b.x[0] < 0.2 ? Overlap{} : common::overlap(a, b, none);
        }},
