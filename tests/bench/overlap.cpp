@@ -9,6 +9,7 @@
 
 #include <array>
 #include <numeric>
+#include <string>
 
 #include "common/geometry/clip_overlap.hpp"
 #include "dem/neighbours.hpp"
@@ -123,14 +124,16 @@ void overlap(benchmark::State& state, bool touching, bool moving) {
       benchmark::Counter(static_cast<double>(pairs), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-#define OVERLAP_LINES(kernel)                                     \
-  BENCHMARK_CAPTURE(overlap<kernel>, in_contact, true, false);    \
-  BENCHMARK_CAPTURE(overlap<kernel>, near_miss, false, false);    \
-  BENCHMARK_CAPTURE(overlap<kernel>, moving_contact, true, true); \
-  BENCHMARK_CAPTURE(overlap<kernel>, moving_near_miss, false, true)
-OVERLAP_LINES(plain);
-OVERLAP_LINES(clipped);
-OVERLAP_LINES(unknown);
-OVERLAP_LINES(remembered);
+template <double (*kKernel)(const OutlineView&, const OutlineView&, PairFeature&)>
+bool register_lines(const std::string& name) {
+  benchmark::RegisterBenchmark((name + "/in_contact").c_str(), overlap<kKernel>, true, false);
+  benchmark::RegisterBenchmark((name + "/near_miss").c_str(), overlap<kKernel>, false, false);
+  benchmark::RegisterBenchmark((name + "/moving_contact").c_str(), overlap<kKernel>, true, true);
+  benchmark::RegisterBenchmark((name + "/moving_near_miss").c_str(), overlap<kKernel>, false, true);
+  return true;
+}
+[[maybe_unused]] const bool registered =
+    register_lines<plain>("overlap/plain") && register_lines<clipped>("overlap/clipped") &&
+    register_lines<unknown>("overlap/unknown") && register_lines<remembered>("overlap/remembered");
 
 }  // namespace
