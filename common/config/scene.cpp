@@ -147,7 +147,8 @@ void bind_assembly(Specification& keys, AssemblyOptions& assembly) {
 
 void bind_contact(Specification& keys, Scene& scene) {
   keys.choice("contact.law", scene.contact.law, {"mean_depth", "area", "potential", "foundation"}, UsedBy::dem,
-              "normal force: kn A / b, kn A, kn A b / L^2 (overlap area A, width b, mean diameter L), or kn A made conservative");
+              "normal force: kn A / b, kn A, kn A b / L^2 (overlap area A, width b, mean diameter L), or kn A made "
+              "conservative");
   keys.number("contact.normal_stiffness", scene.contact.normal_stiffness, kPositive,
               "N/m for mean_depth and potential, N/m^2 for area and foundation", UsedBy::dem,
               "normal stiffness kn; the paper's 2e7 N/m (Table 1) lets particles overlap far too much at 2 to 4 MPa");
