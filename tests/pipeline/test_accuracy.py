@@ -69,7 +69,7 @@ def test_the_study_of_dem_is_valid_and_the_base_is_a_rung_of_every_knob(tmp_path
     base = plan.row_runs[study.base["1"]]
     for knob in study.knobs:
         assert base in [plan.row_runs[knob.variations[label, "1"]] for label in knob.rungs], knob.name
-    assert len(plan.samples()) == 3 * (1 + 4 + 2 + 3), "stiffness, law and size prepare their own"
+    assert len(plan.samples()) == 3 * (1 + 4 + 3 + 3), "stiffness, law and size prepare their own"
 
 
 # -- the numbers
