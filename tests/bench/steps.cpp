@@ -1,7 +1,8 @@
 // Whole steps of a dense assembly, for wall time, threads and instruction counts.
 //   steps SAMPLE.h5 CASE.yaml [STEPS [TILES [THREADS [rest|shear]]]]
 // SAMPLE.h5 is a prepared sample of CASE.yaml. TILES > 1 lays TILES x TILES copies of the square inside the sample side
-// by side, leaves out what would overlap, and presses them together: 4 and 10 make about 7,000 and 80,000 particles of 1194.
+// by side, leaves out what would overlap, and presses them together: 4 and 10 make about 7,000 and 80,000 particles of
+// 1194.
 //   valgrind --tool=callgrind --toggle-collect='dem::Engine::step*' .../steps SAMPLE.h5 CASE.yaml 100
 #include <sys/resource.h>
 
