@@ -1,4 +1,7 @@
 // Resumption of `dem run` in a directory. Oracle: the run that was not interrupted, and INTERFACES, Resume.
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -52,7 +55,8 @@ std::string text_of(const fs::path& file) {
 }  // namespace
 
 TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of the scene that runs") {
-  const fs::path root = fs::temp_directory_path() / "rockbreak_test_run";
+  // A directory of its own: several of these programs may run at a time.
+  const fs::path root = fs::temp_directory_path() / fmt::format("rockbreak_test_run_{}", getpid());
   fs::remove_all(root);
   const fs::path whole = root / "whole";
   const common::Scene scene = small_scene();
