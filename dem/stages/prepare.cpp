@@ -53,8 +53,9 @@ std::vector<std::string> shortcomings_of(const common::Scene& scene, const Engin
   const double e = void_ratio(state, wanted.definition);
   if (!(std::abs(e - wanted.void_ratio) <= wanted.void_ratio_tolerance)) {
     texts.push_back(
-        fmt::format("the sample has a void ratio of {:.4f}, wanted is {:.4f} within {:.4f}; it is used as it is", e,
-                    wanted.void_ratio, wanted.void_ratio_tolerance));
+        fmt::format("the sample has a void ratio of {:.4f}, wanted is {:.4f} within {:.4f}; it is used as it is "
+                    "(dem/README.md, Preparation, has what can be reached at each pressure)",
+                    e, wanted.void_ratio, wanted.void_ratio_tolerance));
   }
   const double unbalanced = engine.health().unbalanced_force;
   const double error = stress_error(state, wanted.confining_pressure);
