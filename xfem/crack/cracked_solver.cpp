@@ -5,12 +5,10 @@
 
 #include "xfem/crack/dense_spd.hpp"
 #include "xfem/crack/edge_loads.hpp"
+#include "xfem/crack/face_contact.hpp"
 
 namespace xfem {
 namespace {
-
-/// Far more than the line search needs: what would still change then are openings of rounding size.
-constexpr int kContactIterations = 50;
 
 /// B_I^T D B_J of two shape functions with the given gradients [Pa/m^2].
 Eigen::Matrix2d stiffness_block(const Eigen::Matrix3d& d, const Vec2& i, const Vec2& j) {
@@ -18,102 +16,6 @@ Eigen::Matrix2d stiffness_block(const Eigen::Matrix3d& d, const Vec2& i, const V
   bi << i.x(), 0, 0, i.y(), i.y(), i.x();
   bj << j.x(), 0, 0, j.y(), j.y(), j.x();
   return bi.transpose() * (d * bj);
-}
-
-/// Adds the closed faces' penalty k l v v^T.
-void add_penalty(DenseSymmetric& matrix, const FaceSegment& face, double stiffness) {
-  for (const auto& [f, wf] : face.jumps) {
-    for (const auto& [g, wg] : face.jumps) {
-      for (int a = 0; a < 2; ++a) {
-        for (int b = 0; b < 2; ++b) {
-          const int row = 2 * f + a;
-          const int column = 2 * g + b;
-          if (row > column) continue;
-          matrix.at(row, column) += stiffness * face.length * wf * face.normal[a] * wg * face.normal[b];
-        }
-      }
-    }
-  }
-}
-
-/// A q for a matrix of which only the upper triangle is stored.
-Eigen::VectorXd product(const DenseSymmetric& matrix, const Eigen::VectorXd& q) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(matrix.size);
-  for (int i = 0; i < matrix.size; ++i) {
-    result[i] += matrix.at(i, i) * q[i];
-    for (int j = i + 1; j < matrix.size; ++j) {
-      result[i] += matrix.at(i, j) * q[j];
-      result[j] += matrix.at(i, j) * q[i];
-    }
-  }
-  return result;
-}
-
-double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// Where on the way from q to q + step the energy 1/2 q S q - right q + 1/2 k sum l min(0, opening)^2 is least, as a
-/// fraction in [0, 1]. Its derivative is piecewise linear and grows; it changes slope where a segment closes or opens.
-double least_energy(const DenseSymmetric& schur, const Eigen::VectorXd& right, const std::vector<FaceSegment>& faces,
-                    double penalty, const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
-  const double constant = dot(step, product(schur, q)) - dot(step, right);
-  const double linear = dot(step, product(schur, step));
-  std::vector<double> from, rate, bends{1.0};
-  for (const FaceSegment& face : faces) {
-    from.push_back(opening(face, q));
-    rate.push_back(opening(face, step));
-    const double bend = rate.back() != 0 ? -from.back() / rate.back() : 0;
-    if (bend > 0 && bend < 1) bends.push_back(bend);
-  }
-  std::sort(bends.begin(), bends.end());
-  const auto derivative = [&](double t) {
-    double sum = constant + linear * t;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      sum += penalty * faces[i].length * std::min(0.0, from[i] + rate[i] * t) * rate[i];
-    }
-    return sum;
-  };
-  double low = 0;
-  double at_low = derivative(low);
-  for (const double bend : bends) {
-    const double at_bend = derivative(bend);
-    if (at_bend >= 0) return at_low < 0 ? low + (bend - low) * (at_low / (at_low - at_bend)) : low;
-    low = bend;
-    at_low = at_bend;
-  }
-  return 1;
-}
-
-/// Enriched dofs under contact of the crack faces; false if the system is singular. Active set: segments that would
-/// overlap are closed, closed ones that would open are released. Left alone such a set may run in circles, so each
-/// new solution is approached only as far as the energy falls, which ends after finitely many steps.
-bool solve_with_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
-                        const std::vector<FaceSegment>& faces, double penalty, CrackedState& state) {
-  const auto overlapping = [&](const Eigen::VectorXd& q) {
-    std::vector<bool> closed;
-    for (const FaceSegment& face : faces) closed.push_back(opening(face, q) < 0);
-    return closed;
-  };
-  Eigen::VectorXd reached = Eigen::VectorXd::Zero(schur.size);
-  std::vector<bool> closed(faces.size(), false);
-  for (int iteration = 0; iteration < kContactIterations; ++iteration) {
-    DenseSymmetric system = schur;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (closed[i]) add_penalty(system, faces[i], penalty);
-    }
-    const std::optional<Eigen::VectorXd> q = solve_spd(std::move(system), right);
-    if (!q) return false;
-    state.q = *q;
-    state.closed_segments = static_cast<int>(std::count(closed.begin(), closed.end(), true));
-    if (overlapping(*q) == closed) break;
-    const Eigen::VectorXd step = *q - reached;
-    reached += least_energy(schur, right, faces, penalty, reached, step) * step;
-    closed = overlapping(reached);
-  }
-  return true;
 }
 
 }  // namespace
@@ -211,7 +113,12 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
 
   const std::vector<FaceSegment> faces = face_segments(mesh, model_->gradients(), enrichment);
   const double penalty = kFacePenalty * model_->constants().young_modulus / mesh.size;
-  state.solved = solve_with_contact(schur, right, faces, penalty, state);
+  std::optional<FaceContact> contact = solve_face_contact(schur, right, faces, penalty);
+  state.solved = contact.has_value();
+  if (contact) {
+    state.q = std::move(contact->q);
+    state.closed_segments = contact->closed_segments;
+  }
   for (int column = 0; column < size; ++column) {
     const Eigen::VectorXd& response = columns[column / 2]->response[column % 2];
     const double factor = state.q[column];

@@ -1,0 +1,26 @@
+// Equilibrium of the enriched dofs under contact of the crack faces.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "xfem/crack/dense_spd.hpp"
+#include "xfem/crack/faces.hpp"
+
+namespace xfem {
+
+struct FaceContact {
+  Eigen::VectorXd q;        ///< enriched dofs, 2 per function [m]
+  int closed_segments = 0;  ///< in contact
+};
+
+/// The q that has the least energy 1/2 q S q - right q + 1/2 penalty sum l min(0, opening)^2; S the stiffness of the
+/// enriched dofs with the standard ones eliminated, penalty in N/m^3. Empty if S is singular.
+/// Active set: segments that would overlap are closed, closed ones that would open are released. Left alone such a set
+/// may run in circles, so each new solution is approached only as far as the energy falls, which ends after finitely
+/// many steps.
+std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
+                                              const std::vector<FaceSegment>& faces, double penalty);
+
+}  // namespace xfem
