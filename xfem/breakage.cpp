@@ -82,6 +82,7 @@ class Analysis {
   CrackedSolver solver_;
   const std::vector<Crack> stored_;
   std::vector<Crack> cracks_;
+  std::vector<Stress> uncracked_;  ///< averaged stress of the uncracked particle
   CrackedState state_;
   std::set<int> no_start_;  ///< elements in which a crack would only cut off a corner
   BreakageResult result_;
@@ -275,15 +276,16 @@ bool Analysis::start_next_crack() {
 
 BreakageResult Analysis::run() {
   const std::vector<Stress> intact = model_.elastic.stresses(solver_.intact_displacement());
-  const std::vector<Stress> intact_average = averaged(intact);
+  uncracked_ = averaged(intact);
+  if (!parameters_.literal) rules_.uncracked = uncracked_;
   Critical critical;
-  for (int t = 0; t < static_cast<int>(intact_average.size()); ++t) {
-    const double factor = load_factor(parameters_.rock, intact_average[t]);
+  for (int t = 0; t < static_cast<int>(uncracked_.size()); ++t) {
+    const double factor = load_factor(parameters_.rock, uncracked_[t]);
     if (factor < critical.load_factor) critical = {t, factor};
   }
   result_.min_safety_factor = critical.load_factor;
   if (critical.element >= 0) {
-    const PrincipalStress p = principal(intact_average[critical.element]);
+    const PrincipalStress p = principal(uncracked_[critical.element]);
     result_.failure_mode = parameters_.rock.mode(p.s1, p.s3);
   }
   result_.mean_stress = mean_stress(mesh_, intact);

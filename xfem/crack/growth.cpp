@@ -67,6 +67,11 @@ Vec2 growth_direction(const GrowthRules& rules, const Stress& stress, const Vec2
   return direction;
 }
 
+/// True if the element failed together with the start of the crack, before any crack turned the stress there.
+bool fails_at_once(const GrowthRules& rules, int element) {
+  return !rules.uncracked.empty() && load_factor(rules.rock, rules.uncracked[element]) <= kFailsAtOnce;
+}
+
 /// The point at which the ray from the tip leaves the element `next`, or, if the crack would not be valid with it,
 /// the nearest point of the other edge; empty if neither is.
 std::optional<CrackPoint> exit_point(const Mesh& mesh, const Crack& crack, int next, const Vec2& direction,
@@ -229,7 +234,8 @@ TipStep advance_tip(const Mesh& mesh, PolygonView outline, const GrowthRules& ru
   if (!fails) return finish(TipOutcome::stays, current, current);
   mean = {mean.xx / area, mean.yy / area, mean.xy / area};
 
-  const Vec2 direction = growth_direction(rules, mean, previous);
+  const Stress& deciding = fails_at_once(rules, next) ? rules.uncracked[next] : mean;
+  const Vec2 direction = growth_direction(rules, deciding, previous);
   const std::optional<CrackPoint> point = exit_point(mesh, current, next, direction, previous, rules.literal);
   if (!point) return finish(TipOutcome::arrested, with_tip(current, TipState::arrested), current);
   Crack grown = current;
