@@ -2,20 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "xfem/crack/dense_spd.hpp"
-#include "xfem/crack/edge_loads.hpp"
 #include "xfem/crack/face_contact.hpp"
+#include "xfem/crack/separation.hpp"
 
 namespace xfem {
 namespace {
 
-/// B_I^T D B_J of two shape functions with the given gradients [Pa/m^2].
-Eigen::Matrix2d stiffness_block(const Eigen::Matrix3d& d, const Vec2& i, const Vec2& j) {
-  Eigen::Matrix<double, 3, 2> bi, bj;
-  bi << i.x(), 0, 0, i.y(), i.y(), i.x();
-  bj << j.x(), 0, 0, j.y(), j.y(), j.x();
-  return bi.transpose() * (d * bj);
+using Block4 = std::array<double, 4>;
+
+/// Adds weight * B_I^T D B_J of two shape functions with the given gradients [N/m^2 for unit thickness].
+void add_stiffness(Block4& block, double weight, const Eigen::Matrix3d& d, const Vec2& i, const Vec2& j) {
+  block[0] += weight * (i.x() * d(0, 0) * j.x() + i.y() * d(2, 2) * j.y());
+  block[1] += weight * (i.x() * d(0, 1) * j.y() + i.y() * d(2, 2) * j.x());
+  block[2] += weight * (i.y() * d(1, 0) * j.x() + i.x() * d(2, 2) * j.y());
+  block[3] += weight * (i.y() * d(1, 1) * j.y() + i.x() * d(2, 2) * j.x());
+}
+
+/// Block of a node in a list that is kept in ascending order of nodes.
+template <typename Blocks>
+Block4& block_of(Blocks& blocks, int node) {
+  auto place = blocks.begin();
+  while (place != blocks.end() && place->node < node) ++place;
+  if (place == blocks.end() || place->node != node) place = blocks.insert(place, {node, {0, 0, 0, 0}});
+  return place->value;
 }
 
 }  // namespace
@@ -29,38 +41,81 @@ CrackedSolver::CrackedSolver(const IntactModel& model, Eigen::VectorXd forces) :
   u0_ = model.solve(forces);
 }
 
-const CrackedSolver::Column& CrackedSolver::column(const EnrichmentFunction& function, std::vector<Block> stiffness) {
-  Column& entry = columns_[{function.crack, function.node}];
-  if (entry.response[0].size() > 0 && entry.stiffness == stiffness) return entry;
-  entry.stiffness = std::move(stiffness);
-  for (int component = 0; component < 2; ++component) {
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(model_->dofs());
-    for (const auto& [node, block] : entry.stiffness) {
-      force[2 * node] = block(0, component);
-      force[2 * node + 1] = block(1, component);
+/// Slot that holds the columns of W of a function for this column of Kua.
+int CrackedSolver::slot_of(const EnrichmentFunction& function, const Blocks& stiffness) {
+  const std::size_t nodes = model_->mesh().nodes.size();
+  const std::size_t key = static_cast<std::size_t>(function.crack) * nodes + function.node;
+  if (key >= slots_.size()) slots_.resize((static_cast<std::size_t>(function.crack) + 1) * nodes, -1);
+  int slot = slots_[key];
+  if (slot >= 0 && columns_[slot].stiffness == stiffness) return slot;
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr Block4 kUnknownBlock{kUnknown, kUnknown, kUnknown, kUnknown};
+  if (slot < 0) {
+    slot = slots_[key] = static_cast<int>(columns_.size());
+    columns_.emplace_back();
+  } else {
+    for (Column& other : columns_) {
+      if (static_cast<std::size_t>(slot) < other.product.size()) other.product[slot] = kUnknownBlock;
     }
-    entry.response[component] = model_->solve(force);
   }
-  return entry;
+  Column& column = columns_[slot];
+  column.stiffness = stiffness;
+  column.product.assign(columns_.size(), kUnknownBlock);
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(model_->dofs(), 2);
+  for (const auto& [node, block] : stiffness) {
+    forces(2 * node, 0) = block[0];
+    forces(2 * node, 1) = block[1];
+    forces(2 * node + 1, 0) = block[2];
+    forces(2 * node + 1, 1) = block[3];
+  }
+  column.response = model_->solve(forces);
+  return slot;
 }
 
-CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
+/// Kau of the function in slot `row` times W of the one in slot `column`.
+const std::array<double, 4>& CrackedSolver::product(int row, int column) {
+  std::vector<Block4>& known = columns_[row].product;
+  if (known.size() < columns_.size()) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    known.resize(columns_.size(), {kUnknown, kUnknown, kUnknown, kUnknown});
+  }
+  Block4& result = known[column];
+  if (!std::isnan(result[0])) return result;
+  result = {0, 0, 0, 0};
+  const double* first = columns_[column].response.data();
+  const double* second = first + columns_[column].response.rows();
+  for (const auto& [node, block] : columns_[row].stiffness) {
+    const int x = 2 * node;
+    const int y = x + 1;
+    result[0] += block[0] * first[x] + block[2] * first[y];
+    result[1] += block[0] * second[x] + block[2] * second[y];
+    result[2] += block[1] * first[x] + block[3] * first[y];
+    result[3] += block[1] * second[x] + block[3] * second[y];
+  }
+  return result;
+}
+
+CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest_support) {
   const Mesh& mesh = model_->mesh();
   const Eigen::Matrix3d d = model_->constants().matrix();
   CrackedState state;
-  state.enrichment = enrich(mesh, cracks);
+  state.enrichment = enrich(mesh, cracks, smallest_support);
   const Enrichment& enrichment = state.enrichment;
   const int functions = static_cast<int>(enrichment.functions.size());
   const int size = 2 * functions;
   state.u = u0_;
   state.q = Eigen::VectorXd::Zero(size);
+  if (is_separated(mesh, cracks, enrichment)) {
+    state.solved = false;
+    return state;
+  }
   if (size == 0) {
-    state.stress = cracked_stresses(*model_, enrichment, state.u, state.q);
+    state.stress = model_->stresses(state.u);
     return state;
   }
 
   DenseSymmetric schur(size);
-  std::vector<std::map<int, Eigen::Matrix2d>> coupling(functions);
+  std::vector<Blocks> coupling(functions);
   for (const CutElement& element : enrichment.cut) {
     const auto& triangle = mesh.triangles[element.element];
     const auto& gradient = model_->gradients()[element.element].gradient;
@@ -68,8 +123,7 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
       double weight = 0;
       for (const ElementPart& part : element.parts) weight += part.area * enrichment.jump(f, part);
       for (int k = 0; k < 3; ++k) {
-        const auto [entry, is_new] = coupling[f.function].emplace(triangle[k], Eigen::Matrix2d::Zero());
-        entry->second += weight * stiffness_block(d, gradient[k], gradient[f.local]);
+        add_stiffness(block_of(coupling[f.function], triangle[k]), weight, d, gradient[k], gradient[f.local]);
       }
       for (const CutElement::Term& g : element.terms) {
         if (f.function > g.function) continue;
@@ -78,36 +132,36 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
           both += part.area * enrichment.jump(f, part) * enrichment.jump(g, part);
         }
         if (both == 0) continue;
-        const Eigen::Matrix2d block = both * stiffness_block(d, gradient[f.local], gradient[g.local]);
-        for (int a = 0; a < 2; ++a) {
-          for (int b = 0; b < 2; ++b) {
-            if (2 * f.function + a <= 2 * g.function + b)
-              schur.at(2 * f.function + a, 2 * g.function + b) += block(a, b);
-          }
-        }
+        Block4 block{0, 0, 0, 0};
+        add_stiffness(block, both, d, gradient[f.local], gradient[g.local]);
+        double* upper = &schur.at(2 * f.function, 2 * g.function);
+        upper[0] += block[0];
+        upper[1] += block[1];
+        upper[size] += block[2];  // below the diagonal and unused where f = g
+        upper[size + 1] += block[3];
       }
     }
   }
 
-  std::vector<const Column*> columns(functions);
-  for (int f = 0; f < functions; ++f) {
-    columns[f] = &column(enrichment.functions[f], {coupling[f].begin(), coupling[f].end()});
+  std::vector<int> slots(functions);
+  for (int f = 0; f < functions; ++f) slots[f] = slot_of(enrichment.functions[f], coupling[f]);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+  if (!loads_.empty()) {
+    if (!edge_loads_) edge_loads_.emplace(*model_, loads_, patch_);
+    right = edge_loads_->forces(enrichment);
   }
-  Eigen::VectorXd right = enriched_forces(*model_, enrichment, loads_, patch_);
   for (int f = 0; f < functions; ++f) {
-    for (int a = 0; a < 2; ++a) {
-      const int row = 2 * f + a;
-      for (const auto& [node, block] : columns[f]->stiffness) {
-        right[row] -= block(0, a) * u0_[2 * node] + block(1, a) * u0_[2 * node + 1];
-      }
-      for (int column = row; column < size; ++column) {
-        const Eigen::VectorXd& response = columns[column / 2]->response[column % 2];
-        double sum = 0;
-        for (const auto& [node, block] : columns[f]->stiffness) {
-          sum += block(0, a) * response[2 * node] + block(1, a) * response[2 * node + 1];
-        }
-        schur.at(row, column) -= sum;
-      }
+    for (const auto& [node, block] : coupling[f]) {
+      right[2 * f] -= block[0] * u0_[2 * node] + block[2] * u0_[2 * node + 1];
+      right[2 * f + 1] -= block[1] * u0_[2 * node] + block[3] * u0_[2 * node + 1];
+    }
+    for (int g = f; g < functions; ++g) {
+      const Block4& block = product(slots[f], slots[g]);
+      double* upper = &schur.at(2 * f, 2 * g);
+      upper[0] -= block[0];
+      upper[1] -= block[1];
+      upper[size] -= block[2];
+      upper[size + 1] -= block[3];
     }
   }
 
@@ -119,45 +173,17 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks) {
     state.q = std::move(contact->q);
     state.closed_segments = contact->closed_segments;
   }
-  for (int column = 0; column < size; ++column) {
-    const Eigen::VectorXd& response = columns[column / 2]->response[column % 2];
-    const double factor = state.q[column];
-    for (Eigen::Index i = 0; i < state.u.size(); ++i) state.u[i] -= factor * response[i];
+  double* __restrict u = state.u.data();
+  const Eigen::Index dofs = state.u.size();
+  for (int f = 0; f < functions; ++f) {
+    const double* __restrict first = columns_[slots[f]].response.data();
+    const double* __restrict second = first + dofs;
+    const double q0 = state.q[2 * f];
+    const double q1 = state.q[2 * f + 1];
+    for (Eigen::Index i = 0; i < dofs; ++i) u[i] = (u[i] - q0 * first[i]) - q1 * second[i];
   }
   state.stress = cracked_stresses(*model_, enrichment, state.u, state.q);
   return state;
-}
-
-Eigen::VectorXd enriched_forces(const IntactModel& model, const Enrichment& enrichment, std::span<const Load> loads,
-                                double patch) {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(enrichment.functions.size()));
-  if (loads.empty()) return forces;
-  const Mesh& mesh = model.mesh();
-  const BodyForce body = inertia_relief(mesh, loads, patch);
-  for (const CutElement& element : enrichment.cut) {
-    const auto& triangle = mesh.triangles[element.element];
-    const Vec2 center = mesh.centroid(element.element);
-    for (const CutElement::Term& term : element.terms) {
-      const Vec2& gradient = model.gradients()[element.element].gradient[term.local];
-      Vec2 sum = Vec2::Zero();
-      for (const ElementPart& part : element.parts) {
-        const double jump = enrichment.jump(term, part);
-        if (jump == 0) continue;
-        sum += jump * integrate_body_force(part.outline, part.area, gradient, center, body);
-      }
-      // A load on the cut edge of a mouth: only beyond the mouth, as seen from the function's node, is H - H_J not 0.
-      const CrackSegment& segment = enrichment.segments[element.segments[term.slot]];
-      for (const CrackPoint* end : {&segment.first, &segment.last}) {
-        const int node = triangle[term.local];
-        if ((end->edge[0] != node && end->edge[1] != node) || !on_boundary(mesh, *end)) continue;
-        const double jump = -2.0 * enrichment.functions[term.function].side;
-        sum += jump * force_beyond_mouth(mesh, *end, node, loads, patch);
-      }
-      forces[2 * term.function] += sum.x();
-      forces[2 * term.function + 1] += sum.y();
-    }
-  }
-  return forces;
 }
 
 std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment& enrichment, const Eigen::VectorXd& u,

@@ -1,16 +1,17 @@
 // Stress of a cracked particle by a bordered Schur complement over the intact factorization:
 //   W = K^-1 Kua,  S = Kaa - Kau W,  S q = fa - Kau u0,  u = u0 - W q,
-// u0 the intact displacement, q the enriched dofs. The intact factor is never touched; a column of W is computed once
-// and kept as long as its column of Kua stays the same.
+// u0 the intact displacement, q the enriched dofs. The intact factor is never touched. A column of W is computed once
+// and kept as long as its column of Kua stays the same, and so is each product of Kau W: a step of growth adds the
+// columns of the nodes that it enriches, and their products.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
-#include <map>
+#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "xfem/crack/edge_loads.hpp"
 #include "xfem/crack/enrichment.hpp"
 #include "xfem/crack/faces.hpp"
 #include "xfem/elasticity/intact_model.hpp"
@@ -27,7 +28,7 @@ struct CrackedState {
 };
 
 /// One load case of one particle; the cracks may change from call to call. The result of a call depends on its cracks
-/// alone, not on earlier calls.
+/// alone, bit for bit, not on earlier calls.
 class CrackedSolver {
  public:
   /// `patch` [m]: see IntactModel::nodal_forces. Keeps a reference to the model.
@@ -37,29 +38,35 @@ class CrackedSolver {
 
   const Eigen::VectorXd& intact_displacement() const { return u0_; }
 
-  /// Precondition: crack_defect is empty for each crack, and none crosses the particle.
-  CrackedState solve(std::span<const Crack> cracks);
+  /// Precondition: crack_defect is empty for each crack. `smallest_support`: see enrich.
+  CrackedState solve(std::span<const Crack> cracks, double smallest_support = kSmallestSupport);
 
  private:
-  using Block = std::pair<int, Eigen::Matrix2d>;  ///< node, Kua of this node and one function
+  /// Kua of one node and one function.
+  struct Block {
+    int node;
+    std::array<double, 4> value;  ///< row by row
+    bool operator==(const Block&) const = default;
+  };
+  using Blocks = ShortList<Block, 10>;
   struct Column {
-    std::vector<Block> stiffness;             ///< ascending nodes
-    std::array<Eigen::VectorXd, 2> response;  ///< the two columns of W
+    Blocks stiffness;          ///< ascending nodes
+    Eigen::MatrixXd response;  ///< the two columns of W (2 n x 2)
+    /// Kau W of this function and the one in each other slot, row by row; NaN: not computed.
+    std::vector<std::array<double, 4>> product;
   };
 
-  const Column& column(const EnrichmentFunction& function, std::vector<Block> stiffness);
+  int slot_of(const EnrichmentFunction& function, const Blocks& stiffness);
+  const std::array<double, 4>& product(int row, int column);
 
   const IntactModel* model_;
   std::vector<Load> loads_;
   double patch_ = 0;
   Eigen::VectorXd u0_;
-  std::map<std::pair<int, int>, Column> columns_;  ///< by crack and node
+  std::optional<EdgeLoads> edge_loads_;  ///< made when the first crack asks for it
+  std::vector<Column> columns_;
+  std::vector<int> slots_;  ///< into columns_, by crack * nodes + node, -1: none
 };
-
-/// Forces on the enriched dofs (2 per function) [N]: the loads on cut boundary edges and the body force of the inertia
-/// relief, so that the virtual work of every enriched displacement is that of the true forces.
-Eigen::VectorXd enriched_forces(const IntactModel& model, const Enrichment& enrichment, std::span<const Load> loads,
-                                double patch = 0);
 
 /// Stress of each element under nodal displacements u and enriched dofs q: the area average over its parts.
 std::vector<Stress> cracked_stresses(const IntactModel& model, const Enrichment& enrichment, const Eigen::VectorXd& u,

@@ -1,23 +1,15 @@
 #include "xfem/crack/edge_loads.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "common/geometry/vec2.hpp"
-#include "xfem/elasticity/stiffness.hpp"
 
 namespace xfem {
-namespace {
 
-std::vector<Vec2> positions(const Mesh& mesh, std::span<const int> nodes) {
-  std::vector<Vec2> points;
-  for (const int node : nodes) points.push_back(mesh.nodes[node]);
-  return points;
-}
-
-}  // namespace
-
-BodyForce inertia_relief(const Mesh& mesh, std::span<const Load> loads, double patch) {
+EdgeLoads::EdgeLoads(const IntactModel& model, std::span<const Load> loads, double patch)
+    : mesh_(&model.mesh()), loads_(loads.begin(), loads.end()), patch_(patch), loop_(boundary_loop(*mesh_)) {
+  const Mesh& mesh = *mesh_;
+  for (const int node : loop_) points_.push_back(mesh.nodes[node]);
   double area = 0;
   Vec2 first = Vec2::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -25,53 +17,81 @@ BodyForce inertia_relief(const Mesh& mesh, std::span<const Load> loads, double p
     area += mesh.areas[t];
     first += mesh.areas[t] * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
   }
-  const Vec2 center = first / area;
+  center_ = first / area;
   double polar = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     // Three mid-edge points integrate a quadratic exactly.
     for (const Vec2& middle : {Vec2((mesh.nodes[a] + mesh.nodes[b]) / 2), Vec2((mesh.nodes[b] + mesh.nodes[c]) / 2),
                                Vec2((mesh.nodes[c] + mesh.nodes[a]) / 2)}) {
-      polar += mesh.areas[t] / 3 * (middle - center).squaredNorm();
+      polar += mesh.areas[t] / 3 * (middle - center_).squaredNorm();
     }
   }
-  const std::vector<Vec2> loop = positions(mesh, boundary_loop(mesh));
-  return {center, rigid_acceleration(loop, boundary_forces(loop, loads, patch), area, center, polar)};
+  acceleration_ = rigid_acceleration(points_, boundary_forces(points_, loads_, patch), area, center_, polar);
 }
 
-Vec2 integrate_body_force(PolygonView part, double area, const Vec2& gradient, const Vec2& element_center,
-                          const BodyForce& body) {
-  const auto value = [&](const Vec2& x) -> Vec2 {
-    const double shape = 1.0 / 3 + gradient.dot(x - element_center);
-    return -shape * (body.acceleration.linear + body.acceleration.angular * common::perpendicular(x - body.center));
-  };
-  Vec2 sum = Vec2::Zero();
-  double covered = 0;
-  for (std::size_t i = 1; i + 1 < part.size(); ++i) {
-    const Vec2 &a = part[0], &b = part[i], &c = part[i + 1];
-    const double weight = common::cross(b - a, c - a) / 2;
-    covered += weight;
-    sum += weight / 3 * (value((a + b) / 2) + value((b + c) / 2) + value((c + a) / 2));
+Eigen::VectorXd EdgeLoads::forces(const Enrichment& enrichment) const {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(enrichment.functions.size()));
+  for (const CutElement& element : enrichment.cut) {
+    const auto& triangle = mesh_->triangles[element.element];
+    for (const CutElement::Term& term : element.terms) {
+      Vec2 sum = Vec2::Zero();
+      for (const ElementPart& part : element.parts) {
+        const double jump = enrichment.jump(term, part);
+        if (jump != 0) sum += jump * integrate_body_force(element.element, term.local, part);
+      }
+      // A load on the cut edge of a mouth: only beyond the mouth, as seen from the function's node, is H - H_J not 0.
+      const CrackSegment& segment = enrichment.segments[element.segments[term.slot]];
+      for (const CrackPoint* end : {&segment.first, &segment.last}) {
+        const int node = triangle[term.local];
+        if ((end->edge[0] != node && end->edge[1] != node) || !on_boundary(*mesh_, *end)) continue;
+        sum += -2.0 * enrichment.functions[term.function].side * beyond_mouth(*end, node);
+      }
+      result[2 * term.function] += sum.x();
+      result[2 * term.function + 1] += sum.y();
+    }
   }
-  return covered != 0 ? Vec2(sum * (area / covered)) : Vec2::Zero();
+  return result;
 }
 
-Vec2 force_beyond_mouth(const Mesh& mesh, const CrackPoint& mouth, int node, std::span<const Load> loads,
-                        double patch) {
+Vec2 EdgeLoads::body_force(const Vec2& position) const {
+  return -(acceleration_.linear + acceleration_.angular * common::perpendicular(position - center_));
+}
+
+/// Integral over a part of N b, exact: both are linear, and three mid-edge points integrate a quadratic exactly.
+Vec2 EdgeLoads::integrate_body_force(int element, int local, const ElementPart& part) const {
+  const auto& triangle = mesh_->triangles[element];
+  std::array<Vec2, 3> at_node;
+  for (int k = 0; k < 3; ++k) at_node[k] = body_force(mesh_->nodes[triangle[k]]);
+  Vec2 sum = Vec2::Zero();
+  const auto add_middle = [&](double weight, const Barycentric& a, const Barycentric& b) {
+    const double shape = weight * (a[local] + b[local]) / 4;
+    for (int k = 0; k < 3; ++k) sum += shape * (a[k] + b[k]) * at_node[k];
+  };
+  for (std::size_t i = 1; i + 1 < part.corners.size(); ++i) {
+    const Barycentric &a = part.corners[0], &b = part.corners[i], &c = part.corners[i + 1];
+    const double weight = area_fraction(a, b, c) * mesh_->areas[element] / 3;
+    add_middle(weight, a, b);
+    add_middle(weight, b, c);
+    add_middle(weight, c, a);
+  }
+  return sum;
+}
+
+Vec2 EdgeLoads::beyond_mouth(const CrackPoint& mouth, int node) const {
   // The mouth becomes a point of the loop, so that no share of a load straddles it.
-  const std::vector<int> nodes = boundary_loop(mesh);
-  std::vector<Vec2> loop = positions(mesh, nodes);
-  const int n = static_cast<int>(nodes.size());
+  std::vector<Vec2> loop = points_;
+  const int n = static_cast<int>(loop_.size());
   int edge = 0;
-  while (std::minmax(nodes[edge], nodes[(edge + 1) % n]) != std::minmax(mouth.edge[0], mouth.edge[1])) ++edge;
+  while (std::minmax(loop_[edge], loop_[(edge + 1) % n]) != std::minmax(mouth.edge[0], mouth.edge[1])) ++edge;
   loop.insert(loop.begin() + edge + 1, mouth.position);
-  const bool starts_at_node = nodes[edge] == node;
+  const bool starts_at_node = loop_[edge] == node;
   const int beyond = starts_at_node ? edge + 1 : edge;
   // N_J falls linearly from its value at the mouth to 0 at the other end.
   const double at_mouth = mouth.edge[0] == node ? 1 - mouth.fraction : mouth.fraction;
   Vec2 sum = Vec2::Zero();
-  for (const Load& load : loads) {
-    for (const BoundaryShare& share : boundary_shares(loop, load, patch)) {
+  for (const Load& load : loads_) {
+    for (const BoundaryShare& share : boundary_shares(loop, load, patch_)) {
       if (share.edge != beyond) continue;
       sum += at_mouth * (starts_at_node ? 1 - share.position : share.position) * share.weight * load.force;
     }

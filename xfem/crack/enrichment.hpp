@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "xfem/crack/path.hpp"
+#include "xfem/crack/short_list.hpp"
 
 namespace xfem {
 
@@ -27,13 +28,22 @@ struct EnrichmentFunction {
   int side;  ///< H_c(x_J)
 };
 
+/// A place in an element by its three shape functions. Near a corner it keeps the digits that coordinates lose.
+using Barycentric = std::array<double, 3>;
+
+/// Area of the triangle a, b, c as a fraction of its element's, positive if counter-clockwise.
+inline double area_fraction(const Barycentric& a, const Barycentric& b, const Barycentric& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
 /// A piece of a cut element on which the H of every crack is constant.
 struct ElementPart {
-  Polygon outline;
-  double area;            ///< [m^2]
-  std::vector<int> side;  ///< one for each segment of the element
+  ShortList<Barycentric, 4> corners;  ///< counter-clockwise
+  double area;                        ///< [m^2]
+  ShortList<int, 1> side;             ///< one for each segment of the element
 };
 
+/// The short lists need no memory of their own as long as one crack cuts the element, which is the rule.
 struct CutElement {
   /// Function `function` acts in the element with the shape function of local node `local`.
   struct Term {
@@ -42,9 +52,9 @@ struct CutElement {
     int slot;  ///< which of the element's segments is the function's crack
   };
   int element;
-  std::vector<int> segments;  ///< indices into Enrichment::segments
-  std::vector<ElementPart> parts;
-  std::vector<Term> terms;
+  ShortList<int, 1> segments;  ///< indices into Enrichment::segments
+  ShortList<ElementPart, 2> parts;
+  ShortList<Term, 3> terms;
 };
 
 struct Enrichment {
@@ -64,6 +74,9 @@ inline constexpr double kSmallestSupport = 1e-4;
 /// Enriched nodes: the nodes of the cut elements, except those of a tip edge inside the particle. A tip on the
 /// boundary is a mouth: its edge's nodes are enriched. So a crack of one or two elements inside has no effect.
 /// Precondition: crack_defect is empty for each crack.
-Enrichment enrich(const Mesh& mesh, std::span<const Crack> cracks);
+Enrichment enrich(const Mesh& mesh, std::span<const Crack> cracks, double smallest_support = kSmallestSupport);
+
+/// Corners of a part in the body frame [m].
+Polygon outline(const Mesh& mesh, int element, const ElementPart& part);
 
 }  // namespace xfem

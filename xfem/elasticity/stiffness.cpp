@@ -89,14 +89,20 @@ struct Cholmod {
   Cholmod& operator=(const Cholmod&) = delete;
 };
 
-/// Solves L D L' x = x for `Width` interleaved right-hand sides. Each column's operations are the same for any width.
+/// Solves L D L' x = x for `Width` interleaved right-hand sides. Each column's operations are the same for any width;
+/// where all of them are zero, nothing is subtracted, so that a few forces cost only the rows that they reach.
 template <int Width>
 void substitute(const std::vector<int>& start, const std::vector<int>& row, const std::vector<double>& value,
                 const std::vector<double>& pivot, double* x) {
   const int n = static_cast<int>(pivot.size());
   std::array<double, Width> own;  // a local copy, so that the compiler keeps the Width values in one register
   for (int j = 0; j < n; ++j) {
-    for (int c = 0; c < Width; ++c) own[c] = x[j * Width + c];
+    bool zero = true;
+    for (int c = 0; c < Width; ++c) {
+      own[c] = x[j * Width + c];
+      zero = zero && own[c] == 0;
+    }
+    if (zero) continue;
     for (int k = start[j]; k < start[j + 1]; ++k) {
       const double l = value[k];
       double* target = x + row[k] * Width;
@@ -209,16 +215,18 @@ Factor::Factor(const Mesh& mesh, const std::vector<ElementGradients>& gradients,
 }
 
 Eigen::MatrixXd Factor::solve(const Eigen::MatrixXd& forces) const {
-  constexpr int kWidth = 4;
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(forces.rows(), forces.cols());
-  std::vector<double> x(dof_.size() * kWidth);
+  std::vector<double> x(dof_.size() * std::min<Eigen::Index>(4, forces.cols()));
   for (Eigen::Index first = 0; first < forces.cols();) {
-    const int width = forces.cols() - first >= kWidth ? kWidth : 1;
+    const Eigen::Index left = forces.cols() - first;
+    const int width = left >= 4 ? 4 : left >= 2 ? 2 : 1;
     for (std::size_t j = 0; j < dof_.size(); ++j) {
       for (int c = 0; c < width; ++c) x[j * width + c] = forces(dof_[j], first + c);
     }
-    if (width == kWidth) {
-      substitute<kWidth>(column_, row_, value_, pivot_, x.data());
+    if (width == 4) {
+      substitute<4>(column_, row_, value_, pivot_, x.data());
+    } else if (width == 2) {
+      substitute<2>(column_, row_, value_, pivot_, x.data());
     } else {
       substitute<1>(column_, row_, value_, pivot_, x.data());
     }
