@@ -23,6 +23,10 @@ constexpr double kLigamentInElements = 1.5;
 /// averaged stress is that of an existing tip, whose own rule decides.
 constexpr double kCrackSpacingInElements = 1.5;
 
+/// Load factors nearer to each other than this are equal: the first element has it, whatever the rounding (symmetric
+/// particles).
+constexpr double kTie = 1e-9;
+
 struct Critical {
   int element = -1;
   double load_factor = std::numeric_limits<double>::infinity();
@@ -253,7 +257,7 @@ bool Analysis::start_next_crack() {
     for (int t = 0; t < static_cast<int>(stress.size()); ++t) {
       if (cutting[t] >= 0 || no_start_.contains(t)) continue;
       const double factor = load_factor(parameters_.rock, stress[t]);
-      if (factor > 1 || factor >= critical.load_factor) continue;
+      if (factor > 1 || !(factor < critical.load_factor * (1 - kTie))) continue;
       const Vec2 center = mesh_.centroid(t);
       const bool is_near = std::any_of(cracks_.begin(), cracks_.end(), [&](const Crack& crack) {
         return std::any_of(crack.points.begin(), crack.points.end(), [&](const CrackPoint& point) {
@@ -314,6 +318,18 @@ ParticleModel::ParticleModel(PolygonView outline_, int nodes, const ElasticConst
       area(common::area(outline_)),
       elastic(make_mesh(outline_, nodes), constants),
       average(elastic.mesh(), averaging_radius_in_de * common::equivalent_diameter(area)) {}
+
+ParticleModel::ParticleModel(const CanonicalOutline& shape, int nodes, const ElasticConstants& constants,
+                             double averaging_radius_in_de)
+    : outline(shape.outline),
+      area(common::area(shape.outline)),
+      elastic(make_mesh(shape, nodes), constants),
+      average(elastic.mesh(), averaging_radius_in_de * common::equivalent_diameter(area)) {}
+
+BreakageParameters in_units_of(double length, BreakageParameters parameters) {
+  parameters.minimum_area /= length * length;
+  return parameters;
+}
 
 BreakageResult analyse(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
                        const BreakageParameters& parameters) {

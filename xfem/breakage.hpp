@@ -24,9 +24,16 @@ struct BreakageParameters {
   double load_factor = 1;
 };
 
+/// The same with lengths in another unit [m].
+BreakageParameters in_units_of(double length, BreakageParameters parameters);
+
 /// What does not change while the particle is intact; made once, shared by all its analyses.
+/// Any unit of length will do, as long as loads, cracks and parameters are in the same.
 struct ParticleModel {
   ParticleModel(PolygonView outline, int nodes, const ElasticConstants& constants, double averaging_radius_in_de);
+  /// In canonical coordinates: loads as force / De, stresses come out in Pa.
+  ParticleModel(const CanonicalOutline& shape, int nodes, const ElasticConstants& constants,
+                double averaging_radius_in_de);
   Polygon outline;
   double area;
   IntactModel elastic;

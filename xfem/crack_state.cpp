@@ -73,7 +73,15 @@ std::optional<Crack> crack_on_mesh(const Mesh& mesh, const Crack& crack) {
   for (const Vec2& node : mesh.nodes) extent = std::max({extent, std::abs(node.x()), std::abs(node.y())});
   const bool stands = std::all_of(crack.points.begin(), crack.points.end(),
                                   [&](const CrackPoint& point) { return stands_on(mesh, point, 1e-9 * extent); });
-  if (stands && crack.points.size() >= 2) return crack;
+  if (stands && crack.points.size() >= 2) {
+    // Where its edge says, to the last bit, so that it does not wander on its way through files.
+    Crack same = crack;
+    for (CrackPoint& point : same.points) {
+      const Vec2& from = mesh.nodes[point.edge[0]];
+      point.position = from + point.fraction * (mesh.nodes[point.edge[1]] - from);
+    }
+    return same;
+  }
   std::vector<Vec2> polyline;
   for (const CrackPoint& point : crack.points) polyline.push_back(point.position);
   Crack placed = place_polyline(mesh, polyline, crack.tips);

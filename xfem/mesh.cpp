@@ -70,6 +70,18 @@ Triangulated triangulate(PolygonView outline, double area, int nodes, const Vec2
   return {std::move(attempt.placement), std::move(triangles), attempt.error, worst};
 }
 
+/// Another position of the lattice helps where the count jumps by whole rows of a thin outline, or where the lattice
+/// meets the outline badly.
+Triangulated triangulate_well(PolygonView outline, int nodes) {
+  std::optional<Triangulated> best;
+  for (const Vec2& shift : {Vec2(0, 0), Vec2(0.3, 0.4), Vec2(0.6, 0.2), Vec2(0.15, 0.75)}) {
+    Triangulated candidate = triangulate(outline, common::area(outline), nodes, shift);
+    if (!best || candidate.better_than(*best)) best = std::move(candidate);
+    if (best->count_error <= kCountTolerance && best->worst_cosine <= kGoodCosine) break;
+  }
+  return std::move(*best);
+}
+
 }  // namespace
 
 Mesh connect(std::vector<Vec2> nodes, std::vector<std::array<int, 3>> triangles) {
@@ -174,43 +186,25 @@ std::vector<int> boundary_loop(const Mesh& mesh) {
 }
 
 Mesh make_mesh(PolygonView outline, int nodes) {
-  if (const std::string defect = common::outline_defect(outline); !defect.empty()) {
-    throw common::numerical_failure("mesh: " + defect);
-  }
-  // Mesh in units of De about the centroid, on a grid of 2^-40, so that the same outline at another scale or place
-  // gives the same topology bit for bit (but for one case in thousands, where a coordinate falls on a grid cell's
-  // edge).
-  const double area = common::area(outline);
-  const double scale = common::equivalent_diameter(area);
-  const Vec2 center = common::centroid(outline);
-  constexpr double kGrid = 1099511627776.0;
-  Polygon unit;
-  for (const Vec2& vertex : outline) {
-    const Vec2 p = (vertex - center) / scale * kGrid;
-    unit.emplace_back(std::floor(p.x() + 0.5) / kGrid, std::floor(p.y() + 0.5) / kGrid);
-  }
-
-  // Another position of the lattice helps where the count jumps by whole rows of a thin outline, or where the lattice
-  // meets the outline badly.
-  std::optional<Triangulated> best;
-  for (const Vec2& shift : {Vec2(0, 0), Vec2(0.3, 0.4), Vec2(0.6, 0.2), Vec2(0.15, 0.75)}) {
-    Triangulated candidate = triangulate(unit, common::area(unit), nodes, shift);
-    if (!best || candidate.better_than(*best)) best = std::move(candidate);
-    if (best->count_error <= kCountTolerance && best->worst_cosine <= kGoodCosine) break;
-  }
-
-  std::vector<Vec2> points = std::move(best->placement.points);
-  const std::size_t boundary = best->placement.on_edge.size();
+  const CanonicalOutline shape = canonical(outline);
+  Triangulated made = triangulate_well(shape.outline, nodes);
+  std::vector<Vec2> points = std::move(made.placement.points);
+  const std::size_t boundary = made.placement.on_edge.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i < boundary) {
-      const auto& [edge, t] = best->placement.on_edge[i];
+      const auto& [edge, t] = made.placement.on_edge[i];
       const Vec2& from = outline[edge];
       points[i] = t == 0 ? from : Vec2(from + t * (outline[(edge + 1) % outline.size()] - from));
     } else {
-      points[i] = center + scale * points[i];
+      points[i] = shape.from_canonical(points[i]);
     }
   }
-  return connect(std::move(points), std::move(best->triangles));
+  return connect(std::move(points), std::move(made.triangles));
+}
+
+Mesh make_mesh(const CanonicalOutline& shape, int nodes) {
+  Triangulated made = triangulate_well(shape.outline, nodes);
+  return connect(std::move(made.placement.points), std::move(made.triangles));
 }
 
 }  // namespace xfem

@@ -5,13 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/geometry/polygon.hpp"
+#include "xfem/canonical.hpp"
 
 namespace xfem {
-
-using common::Polygon;
-using common::PolygonView;
-using common::Vec2;
 
 /// A conforming triangulation with its topology. A pure function of the outline and the requested number of nodes.
 struct Mesh {
@@ -44,5 +40,7 @@ std::vector<int> boundary_loop(const Mesh& mesh);
 /// Boundary nodes come first, counter-clockwise from outline vertex 0 (which is node 0); triangles ascend.
 /// Throws numerical_failure for an outline that cannot be meshed.
 Mesh make_mesh(PolygonView outline, int nodes);
+/// The mesh of a canonical outline, whose nodes are canonical coordinates.
+Mesh make_mesh(const CanonicalOutline& shape, int nodes);
 
 }  // namespace xfem

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
-#include <exception>
 #include <limits>
+#include <optional>
 
 #include "common/error.hpp"
+#include "common/geometry/chord_split.hpp"
 #include "xfem/crack_state.hpp"
+#include "xfem/model_cache.hpp"
+#include "xfem/parallel.hpp"
 
 namespace xfem {
 
@@ -24,16 +26,16 @@ constexpr double kHardlyLoaded = 0.05;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-using ModelCache = std::map<std::int64_t, std::unique_ptr<ParticleModel>>;
-
 /// What one particle brings to the analysis and takes from it.
 struct Case {
   std::vector<Load> loads;  ///< body frame
   bool breakable = false;
-  const std::vector<Crack>* stored = nullptr;      ///< cracks of the previous split
-  std::unique_ptr<ParticleModel>* slot = nullptr;  ///< in the cache; null: not analysed
-  std::string failure;                             ///< why there is no model or no result
-  BreakageResult result;
+  const std::vector<Crack>* stored = nullptr;  ///< cracks of the previous split
+  CanonicalOutline shape;                      ///< of a breakable particle
+  ModelCache::Entry* entry = nullptr;          ///< null: not analysed
+  std::string failure;                         ///< why there is no model or no result
+  bool solved = false;
+  BreakageResult result;  ///< in metres
 };
 
 /// Adds the time since it was made to a phase.
@@ -50,10 +52,6 @@ class PhaseTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-bool same_bits(PolygonView a, PolygonView b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
-
 /// World tensor of a body-frame tensor: R S R^T.
 std::array<double, 3> to_world(const Stress& s, const common::Rotation& rotation) {
   const double c = rotation.cos, n = rotation.sin;
@@ -61,15 +59,40 @@ std::array<double, 3> to_world(const Stress& s, const common::Rotation& rotation
           c * n * (s.xx - s.yy) + (c * c - n * n) * s.xy};
 }
 
+bool is_finite(const Stress& s) {
+  return std::isfinite(s.xx + s.yy + s.xy);
+}
+
 /// Why a result cannot be written down; empty if it can.
 std::string defect_of(const BreakageResult& result) {
-  if (!std::isfinite(result.mean_stress.xx + result.mean_stress.yy + result.mean_stress.xy))
-    return "the stress is not finite";
+  if (!is_finite(result.mean_stress)) return "the stress is not finite";
   if (result.status != common::ParticleStatus::broken) return {};
   if (!result.path) return "broken without a path";
   for (const Polygon* fragment : {&result.left, &result.right})
     if (const std::string defect = common::outline_defect(*fragment); !defect.empty()) return "a fragment: " + defect;
   return {};
+}
+
+std::vector<Load> canonical_loads(const Case& particle) {
+  std::vector<Load> loads;
+  loads.reserve(particle.loads.size());
+  for (const Load& load : particle.loads)
+    loads.push_back({particle.shape.to_canonical(load.point), load.force / particle.shape.size});
+  return loads;
+}
+
+/// Takes a result in canonical coordinates back to metres. The fragments are cut anew from the true outline, so that
+/// they share its vertices bit for bit.
+BreakageResult to_metres(BreakageResult result, const CanonicalOutline& shape, PolygonView outline) {
+  for (Crack& crack : result.cracks)
+    for (CrackPoint& point : crack.points) point.position = shape.from_canonical(point.position);
+  if (result.status == common::ParticleStatus::broken && result.path) {
+    for (Vec2& end : *result.path) end = shape.from_canonical(end);
+    common::ChordSplit pieces = common::split_by_chord(outline, (*result.path)[0], (*result.path)[1]);
+    result.left = std::move(pieces.left);
+    result.right = std::move(pieces.right);
+  }
+  return result;
 }
 
 std::vector<Case> gather_loads(const common::Frame& frame, const std::vector<common::Rotation>& rotation) {
@@ -82,6 +105,10 @@ std::vector<Case> gather_loads(const common::Frame& frame, const std::vector<com
           fmt::format("frame {}: a contact names particle {}, which is not there", frame.frame, id));
     const std::size_t i = static_cast<std::size_t>(found - particles.id.begin());
     if (force.x() == 0 && force.y() == 0) return;
+    if (!force.allFinite() || !point.allFinite()) {
+      cases[i].failure = "a contact force or its point is not finite";
+      return;
+    }
     cases[i].loads.push_back({rotation[i].inverse(point - particles.position[i]), rotation[i].inverse(force)});
   };
   for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
@@ -115,14 +142,14 @@ struct FrameSolver::Implementation {
   ElasticConstants constants;
   std::string config_hash;
   int threads;
-  ModelCache cache;
+  std::optional<ModelCache> cache;
   PhaseSeconds seconds;
   PhaseCounts counts;
   std::vector<std::string> warnings;
 
   void prepare(const common::Frame& frame, const CrackState& state, std::vector<Case>& cases);
-  void build_models(const common::Frame& frame, std::vector<Case>& cases);
-  void analyse_all(std::vector<Case>& cases);
+  void screen_all(std::vector<Case>& cases) const;
+  void analyse_all(const common::Frame& frame, std::vector<Case>& cases) const;
   void record(const common::Frame& frame, const std::vector<common::Rotation>& rotation, std::vector<Case>& cases,
               common::Split& split) const;
   void record_fragments(const common::Frame& frame, std::size_t i, const Case& particle, std::int64_t& next_id,
@@ -130,75 +157,72 @@ struct FrameSolver::Implementation {
   void warn_of_unbalance(const common::Frame& frame, const std::vector<Case>& cases);
 };
 
-/// Decides who is analysed, and keeps of the cache what still fits.
+/// Decides who is analysed, and with which model.
 void FrameSolver::Implementation::prepare(const common::Frame& frame, const CrackState& state,
                                           std::vector<Case>& cases) {
   const common::Particles& particles = frame.particles;
-  ModelCache kept;
+  cache->start_round();
   for (std::size_t i = 0; i < particles.size(); ++i) {
     Case& particle = cases[i];
     const PolygonView outline = particles.outline(i);
     const auto stored = state.find(particles.id[i]);
     if (stored != state.end()) particle.stored = &stored->second;
     particle.breakable = !particles.boundary[i] && !(common::area(outline) < 2 * options.minimum_area);
-    const auto cached = cache.find(particles.id[i]);
-    const bool fits = cached != cache.end() && cached->second && same_bits(cached->second->outline, outline);
-    const bool analysed = particle.breakable && !particle.loads.empty();
-    if (!fits && !analysed) continue;
-    std::unique_ptr<ParticleModel>& slot = kept[particles.id[i]];
-    if (fits) slot = std::move(cached->second);
-    if (analysed) particle.slot = &slot;
-  }
-  cache = std::move(kept);
-}
-
-void FrameSolver::Implementation::build_models(const common::Frame& frame, std::vector<Case>& cases) {
-  const PhaseTimer timer(seconds, "models");
-  std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    if (cases[i].slot && !*cases[i].slot) missing.push_back(i);
-  std::exception_ptr fatal;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    Case& particle = cases[missing[k]];
+    if (!particle.breakable) continue;
     try {
-      *particle.slot = std::make_unique<ParticleModel>(frame.particles.outline(missing[k]), options.nodes, constants,
-                                                       parameters.initiation_radius);
+      particle.shape = canonical(outline);
     } catch (const common::Error& error) {
       particle.failure = error.what();
-    } catch (...) {
-#pragma omp critical
-      fatal = std::current_exception();
+      continue;
     }
+    ModelCache::Entry& entry = cache->at(particle.shape.outline);
+    if (particle.loads.empty() || !particle.failure.empty()) continue;
+    particle.entry = &entry;
+    if (!entry.model && entry.failure.empty()) entry.wanted = true;
   }
-  if (fatal) std::rethrow_exception(fatal);
-  counts["models_built"] = static_cast<std::int64_t>(missing.size());
 }
 
-void FrameSolver::Implementation::analyse_all(std::vector<Case>& cases) {
-  const PhaseTimer timer(seconds, "analysis");
-  std::exception_ptr fatal;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    Case& particle = cases[i];
-    if (!particle.slot || !*particle.slot) continue;
-    const ParticleModel& model = **particle.slot;
-    try {
-      std::vector<Crack> cracks;
-      if (particle.stored)
-        for (const Crack& stored : *particle.stored)
-          if (std::optional<Crack> crack = crack_on_mesh(model.elastic.mesh(), stored))
-            cracks.push_back(std::move(*crack));
-      particle.result = analyse(model, particle.loads, cracks, parameters);
-      particle.failure = defect_of(particle.result);
-    } catch (const common::Error& error) {
-      particle.failure = error.what();
-    } catch (...) {
-#pragma omp critical
-      fatal = std::current_exception();
-    }
-  }
-  if (fatal) std::rethrow_exception(fatal);
+/// What has no cracks and cannot fail is done with here.
+void FrameSolver::Implementation::screen_all(std::vector<Case>& cases) const {
+  for_each_guarded(
+      cases.size(), threads, [&](std::size_t i) -> std::string& { return cases[i].failure; },
+      [&](std::size_t i) {
+        Case& particle = cases[i];
+        if (!particle.entry || !particle.entry->model || particle.stored) return;
+        const std::optional<Influence>& influence = particle.entry->model->influence;
+        if (!influence) return;
+        const Influence::Bound bound = influence->bound(canonical_loads(particle), parameters.rock);
+        if (!(bound.safety_factor > 1) || !is_finite(bound.mean_stress)) return;
+        particle.result.status = common::ParticleStatus::screened;
+        particle.result.min_safety_factor = bound.safety_factor;
+        particle.result.mean_stress = bound.mean_stress;
+      });
+}
+
+void FrameSolver::Implementation::analyse_all(const common::Frame& frame, std::vector<Case>& cases) const {
+  for_each_guarded(
+      cases.size(), threads, [&](std::size_t i) -> std::string& { return cases[i].failure; },
+      [&](std::size_t i) {
+        Case& particle = cases[i];
+        if (!particle.entry || particle.result.status == common::ParticleStatus::screened) return;
+        if (!particle.entry->model) {
+          particle.failure = particle.entry->failure;
+          return;
+        }
+        const ParticleModel& model = particle.entry->model->particle;
+        std::vector<Crack> cracks;
+        if (particle.stored)
+          for (Crack stored : *particle.stored) {
+            for (CrackPoint& point : stored.points) point.position = particle.shape.to_canonical(point.position);
+            if (std::optional<Crack> crack = crack_on_mesh(model.elastic.mesh(), stored))
+              cracks.push_back(std::move(*crack));
+          }
+        const BreakageResult result =
+            analyse(model, canonical_loads(particle), cracks, in_units_of(particle.shape.size, parameters));
+        particle.result = to_metres(result, particle.shape, frame.particles.outline(i));
+        particle.failure = defect_of(particle.result);
+        particle.solved = particle.failure.empty();
+      });
 }
 
 void FrameSolver::Implementation::record_fragments(const common::Frame& frame, std::size_t i, const Case& particle,
@@ -208,7 +232,7 @@ void FrameSolver::Implementation::record_fragments(const common::Frame& frame, s
   const std::array<Vec2, 2>& path = *result.path;
   split.broken.parent.push_back(frame.particles.id[i]);
   split.broken.path.push_back(path);
-  const double clearance = (*particle.slot)->elastic.mesh().size;
+  const double clearance = particle.shape.size * particle.entry->model->particle.elastic.mesh().size;
   for (int side : {+1, -1}) {
     const Polygon& outline = side > 0 ? result.left : result.right;
     const std::int64_t id = next_id++;
@@ -225,9 +249,12 @@ void FrameSolver::Implementation::record_fragments(const common::Frame& frame, s
     // A fragment below the smallest size is never analysed, and one that cannot be meshed will be refused.
     if (common::area(own) < 2 * options.minimum_area) continue;
     try {
-      const Mesh mesh = make_mesh(own, options.nodes);
-      for (const InheritedCrack& crack : inherited) {
+      const CanonicalOutline shape = canonical(own);
+      const Mesh mesh = make_mesh(shape, options.nodes);
+      for (InheritedCrack crack : inherited) {
+        for (Vec2& point : crack.polyline) point = shape.to_canonical(point);
         Crack placed = place_polyline(mesh, crack.polyline, crack.tips);
+        for (CrackPoint& point : placed.points) point.position = shape.from_canonical(point.position);
         if (placed.points.size() >= 2) handed_down[id].push_back(std::move(placed));
       }
     } catch (const common::Error&) {
@@ -246,28 +273,32 @@ void FrameSolver::Implementation::record(const common::Frame& frame, const std::
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Case& particle = cases[i];
     BreakageResult& result = particle.result;
-    const bool solved = particle.slot && particle.failure.empty();
+    const bool screened = result.status == common::ParticleStatus::screened;
     if (!particle.breakable) {
       result.status = common::ParticleStatus::not_breakable;
       result.min_safety_factor = kNotANumber;
-    } else if (particle.loads.empty()) {
-      result.status = particle.stored ? common::ParticleStatus::arrested : common::ParticleStatus::intact;
-      result.min_safety_factor = kInfinity;
-    } else if (!solved) {
+    } else if (!particle.failure.empty()) {
       result = {};
       result.status = common::ParticleStatus::refused;
       result.reason = particle.failure;
       result.min_safety_factor = kNotANumber;
+    } else if (particle.loads.empty()) {
+      result.status = particle.stored ? common::ParticleStatus::arrested : common::ParticleStatus::intact;
+      result.min_safety_factor = kInfinity;
     }
     const bool refused = result.status == common::ParticleStatus::refused;
-    if (!particle.breakable || refused) result.mean_stress = virial_stress(particle.loads, particles.outline(i));
+    if (!particle.breakable || refused) {
+      result.mean_stress = virial_stress(particle.loads, particles.outline(i));
+      if (!is_finite(result.mean_stress)) result.mean_stress = {};  // of forces that overflow
+    }
     // What was not analysed to its end keeps the cracks that it had.
-    if ((!solved || refused) && particle.stored) result.cracks = *particle.stored;
+    if ((!particle.solved || refused) && particle.stored) result.cracks = *particle.stored;
     if (refused) {
       split.refusals.particle.push_back(particles.id[i]);
       split.refusals.reason.push_back(result.reason);
     }
-    if (solved) ++split.work.solved;
+    if (particle.solved) ++split.work.solved;
+    if (screened) ++split.work.screened;
     split.work.growth_steps += result.growth_steps;
 
     split.particles.id.push_back(particles.id[i]);
@@ -291,7 +322,7 @@ void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, 
   double sum = 0;
   int analysed = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!cases[i].slot) continue;
+    if (!cases[i].entry) continue;
     for (const Load& load : cases[i].loads) carried[i] += load.force.norm();
     sum += carried[i];
     ++analysed;
@@ -300,7 +331,7 @@ void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, 
   std::size_t worst = 0;
   double largest = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!cases[i].slot || carried[i] < kHardlyLoaded * sum / analysed) continue;
+    if (!cases[i].entry || carried[i] < kHardlyLoaded * sum / analysed) continue;
     const double unbalance = IntactModel::unbalance(cases[i].loads);
     if (unbalance > kUnbalanceWarning) ++count;
     if (unbalance > largest) {
@@ -320,6 +351,8 @@ FrameSolver::FrameSolver(const common::Scene& scene, int threads)
   implementation_->options = scene.breakage;
   implementation_->parameters = breakage_parameters(scene.material, scene.breakage);
   implementation_->constants = elastic_constants(scene.material);
+  implementation_->cache.emplace(scene.breakage.nodes, implementation_->constants,
+                                 implementation_->parameters.initiation_radius);
   implementation_->config_hash = common::config_hash(scene, common::UsedBy::xfem);
   implementation_->threads = threads > 0 ? threads : omp_get_num_procs();
 }
@@ -345,8 +378,18 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
     cases = gather_loads(frame, rotation);
     self.prepare(frame, state, cases);
   }
-  self.build_models(frame, cases);
-  self.analyse_all(cases);
+  {
+    const PhaseTimer timer(self.seconds, "models");
+    self.counts["models_built"] = self.cache->build(self.threads);
+  }
+  {
+    const PhaseTimer timer(self.seconds, "screening");
+    self.screen_all(cases);
+  }
+  {
+    const PhaseTimer timer(self.seconds, "analysis");
+    self.analyse_all(frame, cases);
+  }
 
   common::Split split;
   split.frame = frame.frame;
@@ -359,6 +402,7 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
   }
   self.counts["particles"] = static_cast<std::int64_t>(frame.particles.size());
   self.counts["contacts"] = static_cast<std::int64_t>(frame.contacts.size());
+  self.counts["screened"] = split.work.screened;
   self.counts["solved"] = split.work.solved;
   self.counts["growth_steps"] = split.work.growth_steps;
   self.counts["broken"] = static_cast<std::int64_t>(split.broken.parent.size());

@@ -7,28 +7,12 @@
 namespace xfem {
 
 EdgeLoads::EdgeLoads(const IntactModel& model, std::span<const Load> loads, double patch)
-    : mesh_(&model.mesh()), loads_(loads.begin(), loads.end()), patch_(patch), loop_(boundary_loop(*mesh_)) {
-  const Mesh& mesh = *mesh_;
-  for (const int node : loop_) points_.push_back(mesh.nodes[node]);
-  double area = 0;
-  Vec2 first = Vec2::Zero();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    area += mesh.areas[t];
-    first += mesh.areas[t] * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3;
-  }
-  center_ = first / area;
-  double polar = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    // Three mid-edge points integrate a quadratic exactly.
-    for (const Vec2& middle : {Vec2((mesh.nodes[a] + mesh.nodes[b]) / 2), Vec2((mesh.nodes[b] + mesh.nodes[c]) / 2),
-                               Vec2((mesh.nodes[c] + mesh.nodes[a]) / 2)}) {
-      polar += mesh.areas[t] / 3 * (middle - center_).squaredNorm();
-    }
-  }
-  acceleration_ = rigid_acceleration(points_, boundary_forces(points_, loads_, patch), area, center_, polar);
-}
+    : mesh_(&model.mesh()),
+      loads_(loads.begin(), loads.end()),
+      patch_(patch),
+      loop_(model.boundary()),
+      points_(model.boundary_points()),
+      body_(model.inertia_relief(loads, patch)) {}
 
 Eigen::VectorXd EdgeLoads::forces(const Enrichment& enrichment) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(enrichment.functions.size()));
@@ -55,7 +39,7 @@ Eigen::VectorXd EdgeLoads::forces(const Enrichment& enrichment) const {
 }
 
 Vec2 EdgeLoads::body_force(const Vec2& position) const {
-  return -(acceleration_.linear + acceleration_.angular * common::perpendicular(position - center_));
+  return -(body_.linear + body_.angular * common::perpendicular(position - body_.center));
 }
 
 /// Integral over a part of N b, exact: both are linear, and three mid-edge points integrate a quadratic exactly.

@@ -35,8 +35,7 @@ class EdgeLoads {
   double patch_;
   std::vector<int> loop_;     ///< boundary nodes in order
   std::vector<Vec2> points_;  ///< and where they stand
-  Vec2 center_;               ///< area centroid [m]
-  RigidAcceleration acceleration_;
+  BodyForce body_;            ///< of the inertia relief
 };
 
 }  // namespace xfem

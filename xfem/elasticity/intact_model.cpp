@@ -46,9 +46,9 @@ struct IntactModel::Implementation {
   Factor factor;
   std::vector<int> loop;          ///< boundary nodes in order
   std::vector<Vec2> loop_points;  ///< and where they stand
-  double area = 0;
-  Vec2 center = Vec2::Zero();
-  double polar_moment = 0;  ///< of the area about the center [m^4]
+  BoundaryLoop feet;              ///< where loads reach them
+  AreaMoments moments{0, Vec2::Zero(), 0};
+  Eigen::MatrixXd rigid;  ///< 2 n x 3: nodal forces of unit body forces along x and y, and about the center
 
   Implementation(Mesh mesh_in, const ElasticConstants& constants_in, const std::array<int, 3>* fixed)
       : mesh(std::move(mesh_in)),
@@ -57,23 +57,41 @@ struct IntactModel::Implementation {
         gradients(element_gradients(mesh)),
         fixed_dofs(fixed != nullptr ? *fixed : determinate_supports(mesh)),
         factor(mesh, gradients, elasticity, fixed_dofs),
-        loop(boundary_loop(mesh)) {
+        loop(xfem::boundary_loop(mesh)),
+        rigid(Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(mesh.nodes.size()), 3)) {
     for (const int node : loop) loop_points.push_back(mesh.nodes[node]);
+    feet = BoundaryLoop(loop_points);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& [a, b, c] = mesh.triangles[t];
-      area += mesh.areas[t];
-      center += mesh.areas[t] / 3 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]);
+      moments.area += mesh.areas[t];
+      moments.center += mesh.areas[t] / 3 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]);
     }
-    center /= area;
+    moments.center /= moments.area;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       Vec2 sum = Vec2::Zero();
       double squares = 0;
       for (const int node : mesh.triangles[t]) {
-        const Vec2 r = mesh.nodes[node] - center;
+        const Vec2 r = mesh.nodes[node] - moments.center;
         sum += r;
         squares += r.squaredNorm();
       }
-      polar_moment += mesh.areas[t] / 12 * (squares + sum.squaredNorm());
+      moments.polar += mesh.areas[t] / 12 * (squares + sum.squaredNorm());
+      // Consistent mass of the T3: A / 12 (1 + delta_ij), exact for the linear field of a rigid acceleration.
+      for (const int node : mesh.triangles[t]) {
+        const Vec2 share = mesh.areas[t] / 12 * common::perpendicular(sum + mesh.nodes[node] - moments.center);
+        rigid(2 * node, 0) += mesh.areas[t] / 3;
+        rigid(2 * node + 1, 1) += mesh.areas[t] / 3;
+        rigid(2 * node, 2) += share.x();
+        rigid(2 * node + 1, 2) += share.y();
+      }
+    }
+  }
+
+  /// Adds the nodal forces of a body force.
+  template <class Column>
+  void add(const BodyForce& body, Column&& forces) const {
+    for (Eigen::Index i = 0; i < rigid.rows(); ++i) {
+      forces[i] -= body.linear[i % 2] * rigid(i, i % 2) + body.angular * rigid(i, 2);
     }
   }
 };
@@ -102,28 +120,44 @@ const std::array<int, 3>& IntactModel::fixed_dofs() const {
   return implementation_->fixed_dofs;
 }
 
+const std::vector<int>& IntactModel::boundary() const {
+  return implementation_->loop;
+}
+const std::vector<Vec2>& IntactModel::boundary_points() const {
+  return implementation_->loop_points;
+}
+const BoundaryLoop& IntactModel::boundary_loop() const {
+  return implementation_->feet;
+}
+
 Eigen::VectorXd IntactModel::nodal_forces(std::span<const Load> loads, double patch) const {
   const Implementation& self = *implementation_;
-  const std::vector<Vec2> forces = boundary_forces(self.loop_points, loads, patch);
-  const RigidAcceleration rigid =
-      rigid_acceleration(self.loop_points, forces, self.area, self.center, self.polar_moment);
+  const std::vector<Vec2> forces = boundary_forces(self.loop_points, self.feet, loads, patch);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     result[2 * self.loop[k]] += forces[k].x();
     result[2 * self.loop[k] + 1] += forces[k].y();
   }
-  // Consistent mass of the T3: A / 12 (1 + delta_ij), exact for the linear field of a rigid acceleration.
-  for (std::size_t t = 0; t < self.mesh.triangles.size(); ++t) {
-    const auto& triangle = self.mesh.triangles[t];
-    std::array<Vec2, 3> body;
-    for (int k = 0; k < 3; ++k) {
-      body[k] = rigid.linear + rigid.angular * common::perpendicular(self.mesh.nodes[triangle[k]] - self.center);
-    }
-    const Vec2 sum = body[0] + body[1] + body[2];
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 share = self.mesh.areas[t] / 12 * (sum + body[k]);
-      result[2 * triangle[k]] -= share.x();
-      result[2 * triangle[k] + 1] -= share.y();
+  self.add(balancing_body_force(self.loop_points, forces, self.moments), result);
+  return result;
+}
+
+BodyForce IntactModel::inertia_relief(std::span<const Load> loads, double patch) const {
+  const Implementation& self = *implementation_;
+  return balancing_body_force(self.loop_points, boundary_forces(self.loop_points, self.feet, loads, patch),
+                              self.moments);
+}
+
+Eigen::MatrixXd IntactModel::unit_boundary_forces() const {
+  const Implementation& self = *implementation_;
+  const Eigen::Index count = static_cast<Eigen::Index>(self.loop.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(dofs(), 2 * count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (int c = 0; c < 2; ++c) {
+      const Vec2 force = Vec2::Unit(c);
+      const std::array<Vec2, 1> point{self.loop_points[k]};
+      result(2 * self.loop[k] + c, 2 * k + c) = 1;
+      self.add(balancing_body_force(point, {&force, 1}, self.moments), result.col(2 * k + c));
     }
   }
   return result;

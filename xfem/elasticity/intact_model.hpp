@@ -27,6 +27,15 @@ struct ElasticConstants {
   Eigen::Matrix3d matrix() const;
 };
 
+/// Body force that balances loads (inertia relief), b(x) = -(linear + angular * perpendicular(x - center)).
+struct BodyForce {
+  Vec2 center;     ///< area centroid [m]
+  Vec2 linear;     ///< [N/m^2]
+  double angular;  ///< [N/m^3]
+};
+
+class BoundaryLoop;  // loads.hpp
+
 /// Strain-displacement data of a T3 element: constant gradients of its three shape functions [1/m].
 struct ElementGradients {
   std::array<Vec2, 3> gradient;
@@ -50,11 +59,21 @@ class IntactModel {
   /// The three dofs that are held, ascending.
   const std::array<int, 3>& fixed_dofs() const;
 
+  /// Boundary nodes in counter-clockwise order, and where they stand [m].
+  const std::vector<int>& boundary() const;
+  const std::vector<Vec2>& boundary_points() const;
+  const BoundaryLoop& boundary_loop() const;
+  /// Nodal forces (2 n x 2 B), in balance: column 2 k + c is a unit force on boundary node k along axis c with its
+  /// inertia relief.
+  Eigen::MatrixXd unit_boundary_forces() const;
+
   /// Nodal forces (2 n) [N] of the loads as consistent edge loads at the nearest point of the boundary (`patch` > 0:
   /// spread over that length [m] along the boundary, see loads.hpp), plus the body force of the rigid acceleration that
   /// balances them (inertia relief): their sum and moment vanish. The moment that a load loses by being moved to the
   /// boundary is thereby balanced too.
   Eigen::VectorXd nodal_forces(std::span<const Load> loads, double patch = 0) const;
+  /// The body force in it.
+  BodyForce inertia_relief(std::span<const Load> loads, double patch = 0) const;
   /// |resultant of the loads| / sum of |load|, before inertia relief.
   static double unbalance(std::span<const Load> loads);
 

@@ -56,35 +56,43 @@ Stress mean_stress(const Mesh& mesh, std::span<const Stress> element_stress) {
   return {sum.xx / area, sum.yy / area, sum.xy / area};
 }
 
-Stress virial_stress(std::span<const Load> loads, PolygonView outline, double patch) {
-  // Integrals of x x, x y, y y about the centroid: a fan of triangles (0, p, q), each
-  // A / 12 (p (x) p + q (x) q + (p + q) (x) (p + q)).
-  const Vec2 center = common::centroid(outline);
-  double area = 0, moment_xx = 0, moment_yy = 0, moment_xy = 0;
+SecondMoments second_moments(PolygonView outline) {
+  // A fan of triangles (0, p, q) about the centroid, each A / 12 (p (x) p + q (x) q + (p + q) (x) (p + q)).
+  SecondMoments result{0, common::centroid(outline), 0, 0, 0};
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 p = outline[i] - center;
-    const Vec2 q = outline[(i + 1) % outline.size()] - center;
+    const Vec2 p = outline[i] - result.center;
+    const Vec2 q = outline[(i + 1) % outline.size()] - result.center;
     const Vec2 r = p + q;
     const double part = 0.5 * common::cross(p, q);
-    area += part;
-    moment_xx += part / 12 * (p.x() * p.x() + q.x() * q.x() + r.x() * r.x());
-    moment_yy += part / 12 * (p.y() * p.y() + q.y() * q.y() + r.y() * r.y());
-    moment_xy += part / 12 * (p.x() * p.y() + q.x() * q.y() + r.x() * r.y());
+    result.area += part;
+    result.xx += part / 12 * (p.x() * p.x() + q.x() * q.x() + r.x() * r.x());
+    result.yy += part / 12 * (p.y() * p.y() + q.y() * q.y() + r.y() * r.y());
+    result.xy += part / 12 * (p.x() * p.y() + q.x() * q.y() + r.x() * r.y());
   }
-  const std::vector<Vec2> forces = boundary_forces(outline, loads, patch);
-  const double rotation = rigid_acceleration(outline, forces, area, center, moment_xx + moment_yy).angular;
-  Stress sum;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 x = outline[i] - center;
-    sum.xx += forces[i].x() * x.x();
-    sum.yy += forces[i].y() * x.y();
-    sum.xy += 0.5 * (forces[i].x() * x.y() + forces[i].y() * x.x());
-  }
+  return result;
+}
+
+Stress Virial::stress() const {
   // The body force -(a + rotation perpendicular(x)): its uniform part has no virial about the centroid.
-  sum.xx += rotation * moment_xy;
-  sum.yy -= rotation * moment_xy;
-  sum.xy += 0.5 * rotation * (moment_yy - moment_xx);
-  return {-sum.xx / area, -sum.yy / area, -sum.xy / area};
+  const double rotation = moment_ / (moments_.xx + moments_.yy);
+  const double xx = xx_ + rotation * moments_.xy;
+  const double yy = yy_ - rotation * moments_.xy;
+  const double xy = xy_ + 0.5 * rotation * (moments_.yy - moments_.xx);
+  return {-xx / moments_.area, -yy / moments_.area, -xy / moments_.area};
+}
+
+Stress virial_stress(std::span<const Load> loads, PolygonView outline, double patch) {
+  const SecondMoments moments = second_moments(outline);
+  const BoundaryLoop loop(outline);
+  Virial virial(moments);
+  for (const Load& load : loads) {
+    for (const BoundaryShare& share : boundary_shares(outline, loop, load, patch)) {
+      const Vec2& from = outline[share.edge];
+      const Vec2& to = outline[(share.edge + 1) % outline.size()];
+      virial.add(from + share.position * (to - from), share.weight * load.force);
+    }
+  }
+  return virial.stress();
 }
 
 }  // namespace xfem
