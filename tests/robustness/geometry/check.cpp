@@ -166,10 +166,11 @@ PairFeature feature_elsewhere(const OutlinePair& pair, Kernel kernel, Draw& draw
     moved.b.y[i] += by.y();
   }
   PairFeature feature;
-  kernel(moved.a.view(), moved.b.view(), feature);
+  kernel(moved.a.view(), moved.b.view(), feature, nullptr);
   return feature;
 }
 
+/// Small numbers and now and then any, whatever the kernel keeps in its feature.
 PairFeature made_up(Draw& draw, const OutlinePair& pair) {
   const int most = std::max(pair.a.size, pair.b.size);
   const auto number = [&draw](int last) {
@@ -178,6 +179,43 @@ PairFeature made_up(Draw& draw, const OutlinePair& pair) {
   PairFeature feature{number(most - 1), number(most), number(most - 1), number(most - 1)};
   if (draw.one_in(2)) feature.edge |= PairFeature::kOfB;
   return feature;
+}
+
+/// Distance of a point from the nearest line along an edge.
+double distance_from_edges(const Outline& outline, const Vec2& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < outline.size; ++i) {
+    const Vec2 v(outline.x[i], outline.y[i]);
+    const Vec2 edge = Vec2(outline.x[outline.next(i)], outline.y[outline.next(i)]) - v;
+    least = std::min(least, std::abs(common::cross(edge, p - v)) / edge.norm());
+  }
+  return least;
+}
+
+/// The first thing that is wrong with an overlap polygon; empty if nothing is.
+std::string complaint(const common::OverlapOutline& outline, const Overlap& found, const Sample& sample,
+                      const Reference& reference) {
+  if (outline.size == 0) return {};
+  if (found.area == 0 || found.crossings != 2) return "a polygon without two crossings";
+  if (outline.size < 4 || outline.size > common::kMaxOverlapVertices || outline.first_a < 2 ||
+      outline.first_a > outline.size - 2) {
+    return "size of the polygon";
+  }
+  const auto vertex = [&outline](int i) { return Vec2(outline.x[i % outline.size], outline.y[i % outline.size]); };
+  const double size = reference.diameter;
+  const double rounding = 1e-15 * size + 0x1p-52 * std::max(Box(sample.pair.a).reach(), Box(sample.pair.b).reach());
+  double twice_area = 0;
+  for (int i = 0; i < outline.size; ++i) {
+    if (!vertex(i).allFinite()) return "polygon not finite";
+    twice_area += common::cross(vertex(i), vertex(i + 1));
+    const Vec2 middle = outline.origin + 0.5 * (vertex(i) + vertex(i + 1));
+    const Outline& owner = i < outline.first_a ? sample.pair.b : sample.pair.a;
+    if (distance_from_edges(owner, middle) > rounding) return "polygon off the boundary";
+  }
+  if (!(std::abs(0.5 * twice_area - reference.area) <= reference.tolerance)) return "area of the polygon";
+  const double chord = vertex(outline.first_a).norm();
+  if (std::abs(std::max(chord, std::sqrt(found.area)) - found.width) > rounding) return "ends of the polygon";
+  return {};
 }
 
 void check_one(Sample& sample, const Overlap& unknown, const Overlap& known, Kernel kernel, Tally& tally) {
@@ -197,12 +235,22 @@ void check_one(Sample& sample, const Overlap& unknown, const Overlap& known, Ker
   const common::OutlineView b = sample.pair.b.view();
   Draw draw(
       static_cast<std::uint64_t>(sample.key[0] + 31 * (sample.key[1] + 31 * (sample.key[2] + 31 * sample.key[3]))));
+  common::OverlapOutline outline;
+  const auto examine_outline = [&](const Overlap& found) {
+    tally.outlines += outline.size > 0;
+    const std::string text = complaint(outline, found, sample, reference);
+    if (!text.empty() && what.empty()) what = text;
+  };
   PairFeature other = made_up(draw, sample.pair);
-  examine(", from a feature made up", kernel(a, b, other));
+  Overlap again = kernel(a, b, other, &outline);
+  examine(", from a feature made up", again);
+  examine_outline(again);
   other = feature_elsewhere(sample.pair, kernel, draw, reference.diameter);
-  examine(", from a feature of another place", kernel(a, b, other));
+  again = kernel(a, b, other, &outline);
+  examine(", from a feature of another place", again);
+  examine_outline(again);
   other = {};
-  Overlap exchanged = kernel(b, a, other);
+  Overlap exchanged = kernel(b, a, other, nullptr);
   exchanged.normal *= -1;
   examine(", exchanged", exchanged);
 
@@ -230,6 +278,7 @@ void Tally::add(const Tally& other) {
   exact_checks += other.exact_checks;
   undecided += other.undecided;
   chord_checks += other.chord_checks;
+  outlines += other.outlines;
   not_convex += other.not_convex;
   disagreements += other.disagreements;
   oracle_failures += other.oracle_failures;
@@ -247,11 +296,11 @@ void check(std::span<Sample> samples, Kernel kernel, Tally& tally) {
   const double start = seconds();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     PairFeature feature;
-    unknown[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), feature);
+    unknown[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), feature, nullptr);
   }
   const double middle = seconds();
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    known[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), samples[k].feature);
+    known[k] = kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), samples[k].feature, nullptr);
   }
   const double end = seconds();
   tally.seconds_unknown += middle - start;
@@ -287,11 +336,11 @@ std::string describe(const Sample& sample, Kernel kernel) {
         o.centroid.x(), o.centroid.y(), o.chord_midpoint.x(), o.chord_midpoint.y(), o.crossings);
   };
   PairFeature feature;
-  write_overlap("kernel, unknown  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature));
+  write_overlap("kernel, unknown  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature, nullptr));
   feature = sample.feature;
-  write_overlap("kernel, feature  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature));
+  write_overlap("kernel, feature  ", kernel(sample.pair.a.view(), sample.pair.b.view(), feature, nullptr));
   feature = {};
-  write_overlap("kernel, exchanged", kernel(sample.pair.b.view(), sample.pair.a.view(), feature));
+  write_overlap("kernel, exchanged", kernel(sample.pair.b.view(), sample.pair.a.view(), feature, nullptr));
   return text;
 }
 

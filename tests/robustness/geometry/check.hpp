@@ -14,7 +14,8 @@
 namespace differential {
 
 /// The kernel under test; the harness tests itself by handing in wrong ones.
-using Kernel = common::Overlap (*)(const common::OutlineView&, const common::OutlineView&, common::PairFeature&);
+using Kernel = common::Overlap (*)(const common::OutlineView&, const common::OutlineView&, common::PairFeature&,
+                                   common::OverlapOutline*);
 
 /// What reproduces a pair: {seed} of its family, or {frame, step, id of a, id of b} of a harvest.
 using CaseKey = std::array<std::int64_t, 4>;
@@ -41,6 +42,7 @@ struct Tally {
   std::int64_t exact_checks = 0;     ///< in rational numbers, for whatever reason
   std::int64_t undecided = 0;        ///< of these, pairs for which the bound of the first oracle did not suffice
   std::int64_t chord_checks = 0;     ///< pairs whose chord is well defined
+  std::int64_t outlines = 0;         ///< overlap polygons that the kernel handed out
   std::int64_t not_convex = 0;       ///< outlines with a corner that rounding made flat or reentrant
   std::int64_t disagreements = 0;    ///< pairs with anything wrong
   std::int64_t oracle_failures = 0;  ///< the two oracles differ by more than the first one's bound
@@ -66,6 +68,8 @@ double area_tolerance(double exact, double diameter);
 ///    sine of the angle at which edges graze each other;
 ///  - width * normal against the oracle's chord, -dA/d(position of b), where edges that meet do not do so at a grazing
 ///    angle: within rounding over the sine of that angle.
+///  - the overlap polygon, if there is one: its area within the tolerance, its pieces on the boundaries that it names,
+///    from crossing to crossing; and nobody's answer changed by asking for it.
 void check(std::span<Sample> samples, Kernel kernel, Tally& tally);
 
 /// Everything known of one pair, for reading.

@@ -115,7 +115,7 @@ std::optional<Sample> harvested_sample(dem::Engine& engine, const common::Scene&
   replay(engine, scene, options, [&](std::span<Sample> samples) {
     for (Sample& sample : samples) {
       if (std::equal(key.begin() + 1, key.end(), sample.key.begin() + 1)) found = sample;
-      kernel(sample.pair.a.view(), sample.pair.b.view(), sample.feature);
+      kernel(sample.pair.a.view(), sample.pair.b.view(), sample.feature, nullptr);
     }
     return !found;
   });

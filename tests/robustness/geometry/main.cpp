@@ -141,6 +141,7 @@ void write_json(const fs::path& file, const std::vector<Result>& results) {
          {"exact_checks", t.exact_checks},
          {"undecided", t.undecided},
          {"chord_checks", t.chord_checks},
+         {"outlines", t.outlines},
          {"not_convex", t.not_convex},
          {"disagreements", t.disagreements},
          {"oracle_failures", t.oracle_failures},

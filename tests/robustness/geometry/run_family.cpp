@@ -30,7 +30,7 @@ Tally run_family(const Family& family, std::int64_t count, std::int64_t first, s
       }
       // The feature that the pair itself leaves is what the second query starts from.
       for (std::int64_t k = 0; k < size; ++k) {
-        kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), samples[k].feature);
+        kernel(samples[k].pair.a.view(), samples[k].pair.b.view(), samples[k].feature, nullptr);
       }
       check(std::span(samples).first(size), kernel, mine);
     }

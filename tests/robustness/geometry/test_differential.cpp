@@ -15,6 +15,7 @@
 using namespace differential;
 using common::OutlineView;
 using common::Overlap;
+using common::OverlapOutline;
 using common::PairFeature;
 using common::Vec2;
 
@@ -81,8 +82,9 @@ void splinter(dem::Engine& engine, double density) {
 }
 
 template <class Change>
-Overlap changed(const OutlineView& a, const OutlineView& b, PairFeature& feature, const Change& change) {
-  Overlap result = common::overlap(a, b, feature);
+Overlap changed(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline,
+                const Change& change) {
+  Overlap result = common::overlap(a, b, feature, outline);
   if (result.area > 0) change(result);
   return result;
 }
@@ -123,8 +125,8 @@ TEST_CASE("the overlap kernel agrees with the oracles in a packing that is shear
 
 TEST_CASE("the counts do not depend on the number of threads") {
   const int threads = omp_get_max_threads();
-  const auto off = [](const OutlineView& a, const OutlineView& b, PairFeature& feature) {
-    return changed(a, b, feature, [](Overlap& o) { o.area *= 1 + 1e-9; });
+  const auto off = [](const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
+    return changed(a, b, feature, outline, [](Overlap& o) { o.area *= 1 + 1e-9; });
   };
   omp_set_num_threads(1);
   const Tally one = run_all(off, 300);
@@ -141,8 +143,8 @@ TEST_CASE("the counts do not depend on the number of threads") {
 
 TEST_CASE("a harvested pair is found again by its key") {
   const common::Scene scene = small_scene();
-  const auto off = [](const OutlineView& a, const OutlineView& b, PairFeature& feature) {
-    return changed(a, b, feature, [](Overlap& o) { o.area *= 1 + 1e-9; });
+  const auto off = [](const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
+    return changed(a, b, feature, outline, [](Overlap& o) { o.area *= 1 + 1e-9; });
   };
   HarvestOptions options;
   options.pairs = 3000;
@@ -163,48 +165,65 @@ TEST_CASE("a kernel that is wrong in one respect does not pass") {
     const char* what;
     Kernel kernel;
   } const wrong[] = {
-      {"area off by 1e-9", [](const OutlineView& a, const OutlineView& b,
-                              PairFeature& f) { return changed(a, b, f, [](Overlap& o) { o.area *= 1 - 1e-9; }); }},
+      {"area off by 1e-9",
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [](Overlap& o) { o.area *= 1 - 1e-9; });
+       }},
       {"shallow contacts missed",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         const Overlap found = common::overlap(a, b, f);
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         const Overlap found = common::overlap(a, b, f, outline);
          return found.area < 1e-12 ? Overlap{} : found;
        }},
       {"no number",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         return changed(a, b, f, [](Overlap& o) {
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [](Overlap& o) {
            if (o.crossings == 0) o.normal.x() = std::numeric_limits<double>::quiet_NaN();
          });
        }},
       {"normal turned by 1e-7",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         return changed(a, b, f, [](Overlap& o) { o.normal += 1e-7 * common::perpendicular(o.normal); });
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [](Overlap& o) { o.normal += 1e-7 * common::perpendicular(o.normal); });
        }},
-      {"normal from b to a", [](const OutlineView& a, const OutlineView& b,
-                                PairFeature& f) { return changed(a, b, f, [](Overlap& o) { o.normal *= -1; }); }},
-      {"width off by 1e-8", [](const OutlineView& a, const OutlineView& b,
-                               PairFeature& f) { return changed(a, b, f, [](Overlap& o) { o.width *= 1 + 1e-8; }); }},
+      {"normal from b to a",
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [](Overlap& o) { o.normal *= -1; });
+       }},
+      {"width off by 1e-8",
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [](Overlap& o) { o.width *= 1 + 1e-8; });
+       }},
       {"only two crossings known",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         const Overlap found = common::overlap(a, b, f);
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         const Overlap found = common::overlap(a, b, f, outline);
          return found.crossings > 2 ? Overlap{} : found;
        }},
       {"centroid of the second particle",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         return changed(a, b, f, [&](Overlap& o) {
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [&](Overlap& o) {
            o.centroid = {b.x[0] + b.x[0] - b.x[1], b.y[0] + b.y[0] - b.y[1]};
          });
        }},
       {"a feature of another place trusted",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         const bool trusted = f.edge == PairFeature::kOfB;
-         f.edge = static_cast<std::uint8_t>(PairFeature::kOfB + (b.x[0] > 0.3 ? 0 : 1));
-         PairFeature none;
-         return trusted && b.x[0] < 0.2 ? Overlap{} : common::overlap(a, b, none);
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         const bool known = f.edge > 0;
+         const Overlap found = common::overlap(a, b, f, outline);
+         return known && b.x[0] < 0.2 ? Overlap{} : found;
+       }},
+      {"overlap polygon too large",
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         const Overlap found = common::overlap(a, b, f, outline);
+         if (outline && outline->size > 0) outline->x[1] *= 1 + 1e-9;
+         return found;
+       }},
+      {"overlap polygon from the wrong end",
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         const Overlap found = common::overlap(a, b, f, outline);
+         if (outline && outline->size > 0) outline->first_a = outline->size - outline->first_a;
+         return found;
        }},
       {"another answer when exchanged",
-       [](const OutlineView& a, const OutlineView& b, PairFeature& f) {
-         return changed(a, b, f, [&](Overlap& o) { o.area *= a.size > b.size ? 1 + 1e-9 : 1; });
+       [](const OutlineView& a, const OutlineView& b, PairFeature& f, OverlapOutline* outline) {
+         return changed(a, b, f, outline, [&](Overlap& o) { o.area *= a.size > b.size ? 1 + 1e-9 : 1; });
        }},
   };
   for (const auto& [what, kernel] : wrong) {
