@@ -1,7 +1,8 @@
 // Most pairs of a packing either have an edge between them, the same one for many steps, or cross twice. So: test the
 // remembered edge; else follow the boundaries from it to the two crossings and prove the outline that they bound. The
-// proof: the vertices of either polygon on that outline lie inside the other polygon, and both crossings are proper.
-// By convexity nothing else can be the overlap, wherever the search started. Everything else is clipped.
+// proof: the vertices of either polygon on that outline lie inside the other polygon, but not all of q's, and both
+// crossings are proper. So the outline runs along the boundary of the overlap, less than once round either polygon, and
+// by convexity nothing else can be the overlap, wherever the search started. Everything else is clipped.
 #include "common/geometry/overlap.hpp"
 
 #include <bit>
@@ -214,11 +215,13 @@ template <int kPadded, class Otherwise>
     if (i == l) break;
   }
   for (unsigned i = j2; i != j1;) {
+    if (sign < 0) return otherwise();  // two edges of b: the overlap polygon would have a and b exchanged
     i = next(p, i);
     if (!inside<kPadded>(q, p.x[i], p.y[i])) return otherwise();
   }
   const unsigned before = previous(q, k);
   const unsigned after = next(q, l);
+  if (after == k) return otherwise();  // all of q inside: where q touches p, an outline may go round q twice
   const unsigned end1 = next(p, j1);
   const unsigned end2 = next(p, j2);
   // Entry and exit side by side: q's edges, p's edges, heights of the ends of p's edges over q's.

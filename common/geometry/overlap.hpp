@@ -28,7 +28,8 @@ struct Overlap {
 
 /// What the last query learned of a pair: an edge that has the other polygon outside, or else which edges cross and
 /// which vertices lie between. Zero: nothing known. Any value is allowed, also of another pair: it decides how fast the
-/// answer comes; the answer differs by rounding at most.
+/// answer comes; the answer differs by rounding at most (of the vertices: the chord of a polygon that touches another
+/// from inside is one of those that a shift by rounding gives).
 struct PairFeature {
   std::uint8_t edge = 0;   ///< separates, or is where the other boundary enters: from vertex `edge` to the next one; an
                            ///< edge of a, or of b if kOfB is added

@@ -1,14 +1,20 @@
 // The overlap kernel against the oracles, in a few seconds; and the harness against kernels that are wrong.
 #include <omp.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/geometry/chord_split.hpp"
 #include "dem/fragments.hpp"
 #include "dem/stages/control.hpp"
 #include "dem/stages/generate.hpp"
+#include "tests/robustness/geometry/clip_exact.hpp"
+#include "tests/robustness/geometry/families.hpp"
 #include "tests/robustness/geometry/harvest.hpp"
 #include "tests/robustness/geometry/run_family.hpp"
 
@@ -89,6 +95,49 @@ Overlap changed(const OutlineView& a, const OutlineView& b, PairFeature& feature
   return result;
 }
 
+/// Queries from every edge and vertex that a feature can name, and one beyond; the wrong areas among them, those of the
+/// overlap polygons included.
+struct Every {
+  std::int64_t queries = 0;
+  std::int64_t wrong = 0;
+};
+void query_every_feature(const OutlinePair& pair, Every& every) {
+  OutlinePair convex = pair;
+  make_convex(convex.a);
+  make_convex(convex.b);
+  const double exact = exact_area(convex);
+  const double tolerance = area_tolerance(exact, std::max(diameter(pair.a), diameter(pair.b)));
+  const int most = std::max(pair.a.size, pair.b.size);
+  OverlapOutline outline;
+  for (const unsigned of_b : {0u, PairFeature::kOfB}) {
+    for (int code = 0; code < (most + 1) * (most + 1) * (most + 1) * (most + 2); ++code) {
+      PairFeature feature;
+      int rest = code;
+      const auto digit = [&rest](int base) {
+        const int value = rest % base;
+        rest /= base;
+        return static_cast<std::uint8_t>(value);
+      };
+      feature.edge = static_cast<std::uint8_t>(digit(most + 1) + of_b);
+      feature.first = digit(most + 1);
+      feature.last = digit(most + 1);
+      feature.exit = digit(most + 2);
+      const Overlap found = common::overlap(pair.a.view(), pair.b.view(), feature, &outline);
+      ++every.queries;
+      every.wrong += !(std::abs(found.area - exact) <= tolerance);
+      if (outline.size == 0) continue;
+      double twice = 0;
+      for (int i = 0, j = outline.size - 1; i < outline.size; j = i++) {
+        twice += outline.x[j] * outline.y[i] - outline.x[i] * outline.y[j];
+      }
+      every.wrong += !(std::abs(0.5 * twice - exact) <= tolerance);
+    }
+  }
+}
+const Family& family_of(const std::string& name) {
+  return *std::find_if(families().begin(), families().end(), [&](const Family& f) { return f.name == name; });
+}
+
 }  // namespace
 
 TEST_CASE("the overlap kernel agrees with the oracles on random and adversarial pairs of every family") {
@@ -100,6 +149,36 @@ TEST_CASE("the overlap kernel agrees with the oracles on random and adversarial 
     CHECK(tally.overlapping > 2800);
     CHECK(tally.disagreements == 0);
     CHECK(tally.oracle_failures == 0);
+  }
+}
+
+TEST_CASE("every value of a feature gives the exact area") {
+  OutlinePair pair;
+  SECTION("of pairs of every family") {
+    for (const Family& family : families()) {
+      Every every;
+      for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        make_pair(family, seed, pair);
+        if (pair.a.size <= 4 && pair.b.size <= 4) query_every_feature(pair, every);
+      }
+      INFO(family.name << ": " << every.queries << " queries");
+      CHECK(every.wrong == 0);
+    }
+  }
+  SECTION("of polygons that touch another from inside, round which an outline fits twice") {
+    const std::pair<const char*, std::vector<std::uint64_t>> cases[] = {
+        {"inclusion", {1313, 252438, 667918, 985080, 2021525, 2044442, 2932561, 3007831, 6378746}},
+        {"lattice", {725, 18538}}};
+    for (const auto& [name, seeds] : cases) {
+      for (const std::uint64_t seed : seeds) {
+        make_pair(family_of(name), seed, pair);
+        Every every;
+        query_every_feature(pair, every);
+        INFO(name << ":" << seed);
+        CHECK(every.queries > 0);
+        CHECK(every.wrong == 0);
+      }
+    }
   }
 }
 
