@@ -68,7 +68,9 @@ std::optional<Eigen::VectorXd> solve_spd(DenseSymmetric matrix, const Eigen::Vec
       subtract_rows<kPanel>(&matrix.at(i, 0), panel, n, factor, i, n);
     }
   }
+  double largest_right = 0, largest = 0;
   for (int i = 0; i < n; ++i) {
+    largest_right = std::max(largest_right, std::abs(x[i]));
     x[i] /= matrix.at(i, i);
     const double factor = x[i];
     subtract_rows<1>(x.data(), &matrix.at(i, 0), n, &factor, i + 1, n);
@@ -76,7 +78,12 @@ std::optional<Eigen::VectorXd> solve_spd(DenseSymmetric matrix, const Eigen::Vec
   for (int i = n - 1; i >= 0; --i) {
     x[i] = (x[i] - dot(&matrix.at(i, 0), x.data(), i + 1, n)) / matrix.at(i, i);
   }
-  for (int i = 0; i < n; ++i) x[i] *= scale[i];
+  for (int i = 0; i < n; ++i) {
+    largest = std::max(largest, std::abs(x[i]));
+    x[i] *= scale[i];
+  }
+  // A pivot tells a singular matrix only roughly; a solution that has grown beyond its digits tells the rest.
+  if (!(smallest_pivot * largest <= largest_right)) return std::nullopt;
   return x;
 }
 

@@ -18,8 +18,9 @@ struct DenseSymmetric {
 };
 
 /// Solves A x = b by Cholesky (U^T U) after scaling the diagonal to 1 (Jacobi), which makes the condition of an XFEM
-/// system independent of how small the cut parts are. Empty if a pivot falls below `smallest_pivot`: A is singular.
+/// system independent of how small the cut parts are. Empty if a pivot falls below `smallest_pivot`, or if the scaled x
+/// is larger than the scaled b by more than its inverse: A is singular to within rounding.
 std::optional<Eigen::VectorXd> solve_spd(DenseSymmetric matrix, const Eigen::VectorXd& right,
-                                         double smallest_pivot = 1e-13);
+                                         double smallest_pivot = 1e-8);
 
 }  // namespace xfem

@@ -63,16 +63,23 @@ Vec2 EdgeLoads::integrate_body_force(int element, int local, const ElementPart& 
 }
 
 Vec2 EdgeLoads::beyond_mouth(const CrackPoint& mouth, int node) const {
-  // The mouth becomes a point of the loop, so that no share of a load straddles it.
   std::vector<Vec2> loop = points_;
   const int n = static_cast<int>(loop_.size());
   int edge = 0;
   while (std::minmax(loop_[edge], loop_[(edge + 1) % n]) != std::minmax(mouth.edge[0], mouth.edge[1])) ++edge;
-  loop.insert(loop.begin() + edge + 1, mouth.position);
   const bool starts_at_node = loop_[edge] == node;
-  const int beyond = starts_at_node ? edge + 1 : edge;
+  int beyond = edge;
   // N_J falls linearly from its value at the mouth to 0 at the other end.
-  const double at_mouth = mouth.edge[0] == node ? 1 - mouth.fraction : mouth.fraction;
+  double at_mouth = 1;
+  if (mouth.position == points_[edge] || mouth.position == points_[(edge + 1) % n]) {
+    // Nearer to a node than rounding tells: all of the edge is beyond it as seen from there, nothing from the other.
+    if (starts_at_node != (mouth.position == points_[edge])) return Vec2::Zero();
+  } else {
+    // The mouth becomes a point of the loop, so that no share of a load straddles it.
+    loop.insert(loop.begin() + edge + 1, mouth.position);
+    if (starts_at_node) ++beyond;
+    at_mouth = mouth.edge[0] == node ? 1 - mouth.fraction : mouth.fraction;
+  }
   Vec2 sum = Vec2::Zero();
   for (const Load& load : loads_) {
     for (const BoundaryShare& share : boundary_shares(loop, load, patch_)) {

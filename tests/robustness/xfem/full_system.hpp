@@ -1,0 +1,34 @@
+// The whole enriched system, standard and enriched dofs together, evaluated part by part. Shares no matrix with the
+// solver: no stiffness, no Schur complement, no condensation.
+#pragma once
+
+#include <span>
+
+#include "xfem/crack/cracked_solver.hpp"
+
+namespace growth_walks {
+
+struct Residual {
+  /// Largest unbalanced force on a dof over the largest load on one and sum of |K_ij x_j|, each divided by the root of
+  /// the dof's diagonal entry (Jacobi scaling): with it a dof with a support of 1e-28 of an element counts as much as
+  /// any other.
+  double scaled = 0;
+  /// The same over the largest load alone. Where a part hangs on a last element, it turns far for a small load, and
+  /// what rounding of its displacement leaves unbalanced grows with it.
+  double over_load = 0;
+  /// 1 + the largest sum of |K_ij x_j| over the largest load.
+  double amplification = 1;
+  /// Largest |mean stress - virial stress| over the sum of the loads times the particle's diameter over its area.
+  double virial = 0;
+  bool is_finite = true;
+};
+
+/// What a state leaves unbalanced under the loads, closed faces and held dofs (whose reactions vanish) included.
+Residual residual_of(const xfem::IntactModel& model, std::span<const xfem::Load> loads, double patch,
+                     const common::Polygon& outline, const xfem::CrackedState& state);
+
+/// Smallest eigenvalue of the whole stiffness, standard and enriched, three dofs held, diagonal scaled to 1: next to
+/// nothing if a part of the particle can move without strain, or if two enriched functions are the same.
+double smallest_eigenvalue(const xfem::IntactModel& model, const xfem::Enrichment& enrichment);
+
+}  // namespace growth_walks
