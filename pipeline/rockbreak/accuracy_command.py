@@ -6,25 +6,26 @@ from .campaign_command import add_campaign_arguments, print_plan, raise_failures
 from .campaign_run import carry_out
 from .campaign_tables import run_rows, write_csv
 from .command_line import Parser, guarded
-from .plan import make_plan
+from .plan import joined, make_plan
 
 
 def accuracy(arguments=None):
     parser = Parser(prog="pipeline/accuracy", description="What accuracy costs in time: ladders of one knob at a time "
-                    "against their finest rung, over several seeds. Resumable like a campaign. The path of accuracy.md "
-                    "is all that it writes to stdout.")
+                    "against their finest rung or theory, over several seeds or specimens. Resumable like a campaign. "
+                    "The path of accuracy.md is all that it writes to stdout.")
     parser.add_argument("study", type=Path, help="for example configs/accuracy_dem.yaml")
     add_campaign_arguments(parser)
     options = parser.parse_args(arguments)
 
     def work():
         study = read_study(options.study, options.overrides)
-        plan = make_plan(study.campaign, options.out, options.threads)
+        plan = joined(options.out, [make_plan(subject.campaign, options.out, options.threads)
+                                    for subject in study.subjects])
         if options.dry_run:
             print_plan(plan)
             return
         seconds = carry_out(plan, parser.prog, options.jobs)
-        write_csv(plan.out / "campaign.csv", run_rows(study.campaign, plan, seconds))
+        write_csv(plan.out / "campaign.csv", run_rows(study.subjects[0].campaign, plan, seconds))
         from .accuracy_report import write_accuracy  # matplotlib is slow to load
         print(write_accuracy(study, plan, seconds))
         raise_failures(plan)

@@ -1,8 +1,9 @@
 """Errors, scatter and cost of the rungs of a ladder.
 
-Of a measure m, on rung r and seed s, the error is sqrt(mean over s of (m(r, s) - m(reference, s))^2): paired, so that
-what a seed does to all rungs cancels. Beside it stands the scatter between seeds, sqrt(mean over r of var over s of
-m(r, s)), which any single test has anyway.
+Of a measure m, on rung r and specimen s (a seed, say), the error is sqrt(mean over s of d(r, s)^2). d is the difference
+from the reference's run of the same specimen: paired, so that what a specimen does to all rungs cancels; or from theory
+where the measure has one. Beside it stands the scatter between specimens, sqrt(mean over r of var over s of m(r, s)),
+which any single test has anyway.
 """
 import math
 from dataclasses import dataclass, field
@@ -14,8 +15,8 @@ from .campaign_tables import mean, numbers_of, scatter
 class Cell:
     """One measure on one rung."""
     mean: float | None = None
-    difference: float | None = None  # mean over the seeds
-    error: float | None = None       # root mean square over the seeds
+    difference: float | None = None  # mean over the specimens
+    error: float | None = None       # root mean square over the specimens; of a share their mean
     pairs: int = 0
 
 
@@ -25,10 +26,10 @@ class Rung:
     is_reference: bool
     is_base: bool
     runs: list
-    cells: dict = field(default_factory=dict)  # measure -> Cell
-    cpu_seconds: float | None = None           # means over the seeds
+    cells: dict = field(default_factory=dict)  # name of a measure -> Cell
+    costs: dict = field(default_factory=dict)  # number of the summary -> mean over the specimens
     preparation_seconds: float | None = None
-    contact_steps: float | None = None
+    cost: float | None = None                  # the first of the costs: what errors are held against
 
     @property
     def failures(self):
@@ -38,50 +39,52 @@ class Rung:
 @dataclass
 class Ladder:
     knob: object
+    subject: object
     rungs: list
-    scatter: dict  # measure -> scatter between seeds, None with one seed
+    scatter: dict  # name of a measure -> scatter between specimens, None with one specimen
 
-    reference = property(lambda self: self.rungs[0])
+    reference = property(lambda self: next((rung for rung in self.rungs if rung.is_reference), None))
     base = property(lambda self: next((rung for rung in self.rungs if rung.is_base), None))
 
-
-def measured(run, measure):
-    numbers = numbers_of(run.summary) if run.summary else {}
-    key, divisor = measure
-    value = numbers.get(key)
-    if value is None or divisor is None:
-        return value
-    return value / numbers[divisor] if numbers.get(divisor) else None
+    def allowed(self, measure, floors):
+        """The error that is good enough: the tolerance of the study; without one, what two equally good runs differ
+        by."""
+        if measure in self.subject.tolerances:
+            return self.subject.tolerances[measure]
+        return max(self.scatter[measure] or 0.0, floors.get(measure, 0.0))
 
 
-def ladder_of(knob, study, plan, sample_seconds):
-    rungs, spreads = [], {measure: [] for measure in study.measures}
-    base_runs = [plan.row_runs[variation] for variation in study.base.values()]
-    reference = [plan.row_runs[knob.variations[knob.rungs[0], seed]] for seed in study.seeds]
-    for number, label in enumerate(knob.rungs):
-        runs = [plan.row_runs[knob.variations[label, seed]] for seed in study.seeds]
-        rung = Rung(label, number == 0, runs == base_runs, runs)
-        for name, measure in study.measures.items():
-            rung.cells[name] = compared([measured(run, measure) for run in runs],
-                                        [measured(run, measure) for run in reference])
-            spread = scatter([value for value in (measured(run, measure) for run in runs) if value is not None])
-            if spread is not None:
-                spreads[name].append(spread ** 2)
-        rung.cpu_seconds = mean_number(runs, "cpu_seconds")
-        rung.contact_steps = mean_number(runs, "contact_steps")
+def ladder_of(knob, subject, kind, plan, sample_seconds):
+    rungs, spreads = [], {measure.name: [] for measure in subject.measures}
+    base_runs = [plan.row_runs[variation] for variation in subject.base.values()]
+    for label in knob.rungs:
+        runs = [plan.row_runs[knob.variations[label, specimen]] for specimen in subject.specimens]
+        references = [plan.row_runs[knob.references[label, specimen]] for specimen in subject.specimens]
+        rung = Rung(label, knob.is_reference(label), runs == base_runs, runs)
+        for measure in subject.measures:
+            values = [measure.value(run) for run in runs if run.summary]
+            rung.cells[measure.name] = cell_of(values, [
+                measure.difference(run, reference) for run, reference in zip(runs, references)
+                if run.summary and reference.summary], measure.is_share)
+            spread = scatter([value for value in values if value is not None])
+            if spread is not None and not measure.is_share:
+                size = abs(rung.cells[measure.name].mean) if measure.relative else 1.0
+                spreads[measure.name].append((spread / size) ** 2)
+        rung.costs = {key: mean_number(runs, key) for _, _, key, _ in kind.COSTS}
+        rung.cost = next(iter(rung.costs.values()))
         prepared = [sample_seconds.get(run.sample.hash) for run in runs if run.sample]
         rung.preparation_seconds = mean(prepared) if prepared and None not in prepared else None
         rungs.append(rung)
-    return Ladder(knob, rungs, {name: math.sqrt(mean(found)) if found else None for name, found in spreads.items()})
+    return Ladder(knob, subject, rungs,
+                  {name: math.sqrt(mean(found)) if found else None for name, found in spreads.items()})
 
 
-def compared(values, reference):
-    pairs = [(value, other) for value, other in zip(values, reference) if value is not None and other is not None]
-    known = [value for value in values if value is not None]
-    cell = Cell(mean=mean(known) if known else None, pairs=len(pairs))
-    if pairs:
-        cell.difference = mean([value - other for value, other in pairs])
-        cell.error = math.sqrt(mean([(value - other) ** 2 for value, other in pairs]))
+def cell_of(values, differences, is_share):
+    values, differences = ([number for number in numbers if number is not None] for numbers in (values, differences))
+    cell = Cell(mean=mean(values) if values else None, pairs=len(differences))
+    if differences:
+        cell.difference = mean(differences)
+        cell.error = cell.difference if is_share else math.sqrt(mean([number ** 2 for number in differences]))
     return cell
 
 
@@ -104,13 +107,9 @@ def floors_of(ladders):
 
 
 def beyond(rung, ladder, floors):
-    """Measures whose error stands out of what two equally good runs differ by."""
-    found = []
-    for name, cell in rung.cells.items():
-        allowed = max(ladder.scatter[name] or 0.0, floors.get(name, 0.0))
-        if cell.error is None or cell.error > allowed:
-            found.append(name)
-    return found
+    """Measures whose error is unknown, or larger than what is good enough."""
+    return [name for name, cell in rung.cells.items()
+            if cell.error is None or cell.error > ladder.allowed(name, floors)]
 
 
 def is_whole(rung):
@@ -118,6 +117,6 @@ def is_whole(rung):
 
 
 def cheapest_good(ladder, floors):
-    """The rung of least CPU time whose errors all stay within the scatter."""
+    """The rung of least cost whose errors are all good enough."""
     good = [rung for rung in ladder.rungs if is_whole(rung) and not beyond(rung, ladder, floors)]
-    return min(good, key=lambda rung: rung.cpu_seconds, default=None)
+    return min(good, key=lambda rung: rung.cost, default=None)

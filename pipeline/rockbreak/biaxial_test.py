@@ -1,16 +1,13 @@
 """What a campaign needs to know of its kind of run: how `pipeline/run` is called for a biaxial test, what identifies
-it, which part of it its preparation sees, where its numbers stand. Another kind of run has the same methods.
+it, which part of it its preparation sees, where its numbers stand. Another kind of run has the same functions.
 """
-import copy
 import json
-import subprocess
 from pathlib import Path
 
 import yaml
 
+from .cases import as_words, explained, hash_of, value_at, without
 from .child import REPOSITORY, executable
-from .errors import BAD_INPUT, RockbreakError
-from .payload_hash import xxh3_128
 from .run_directory import RunDirectory, attributes
 
 # Preparation sees the other keys; so does it any key that is new.
@@ -39,6 +36,16 @@ TRENDS = (  # of these, against an axis with numbers
     ("contacts, end", "contacts_final"),
 )
 
+COSTS = (  # heading, column of accuracy.csv, number of the summary, factor; errors are held against the first
+    ("CPU [s]", "cpu_seconds", "cpu_seconds", 1),
+    ("contact-steps", "contact_steps", "contact_steps", 1),
+)
+COST_AXIS, COST_UNIT = "CPU time [s]", "s"
+COST_NOTE = ("CPU time: user seconds of the shear stage; the prepared sample is counted apart. Contact-steps do not "
+             "depend on the machine.")
+THEORY_NOTE = ""
+SPECIMENS = "seeds"
+ERRORS = ()  # measures beyond the numbers of summary.json
 MEASURES = {  # of an accuracy study, unless it names its own
     "peak sin φ": "peak_sin_phi",
     "residual sin φ": "residual_sin_phi",
@@ -48,37 +55,9 @@ MEASURES = {  # of an accuracy study, unless it names its own
 }
 
 
-def as_words(keys):
-    return [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
-
-
 def resolve(scene, keys, where):
     """The scene with every default, validated by `dem`; `where` names the row of the table for a message."""
-    process = subprocess.run([executable("dem"), "explain", str(scene), *as_words(keys)], capture_output=True,
-                             text=True, check=False)
-    if process.returncode != 0:
-        said = process.stderr.strip().removeprefix("dem: error: ") or "`dem explain` failed without a message"
-        raise RockbreakError(BAD_INPUT, f"{where}: {said}")
-    return yaml.safe_load(process.stdout)
-
-
-def value_at(case, key):
-    """The value of a dotted key; None if there is none."""
-    for name in key.split("."):
-        case = case.get(name) if isinstance(case, dict) else None
-    return case
-
-
-def without(case, keys):
-    case = copy.deepcopy(case)
-    for key in keys:
-        section, _, name = key.rpartition(".")
-        ((value_at(case, section) if section else case) or {}).pop(name, None)
-    return case
-
-
-def hash_of(content):
-    return xxh3_128(json.dumps(content, sort_keys=True).encode())
+    return yaml.safe_load(explained("dem", scene, keys, where))
 
 
 def prepared_elsewhere(case):

@@ -17,8 +17,11 @@
 import itertools
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
+from . import biaxial_test
+from .kinds import kind_of
 from .text_yaml import Section, flow_text, read_mapping
 
 KEYS = ("base", "set", "axes", "runs", "shared_sample", "report", "compare")
@@ -54,6 +57,11 @@ class Campaign:
     report: bool = True
     compare: str = "none"
 
+    @cached_property
+    def kind(self):
+        """The module of its kind of run."""
+        return kind_of(self.base)
+
 
 def read_campaign(path, overrides=()):
     """`overrides`: KEY=VALUE for all runs, beside the file's own `set`."""
@@ -73,8 +81,12 @@ def read_campaign(path, overrides=()):
         for key, _ in variation.keys:
             if key in dict(parsed(overrides)):
                 file.fail("axes", f"--set {key}: found a key that the table varies, expected one that all runs share")
-    return Campaign(path, base, common, variations, list(axes.content), shared_sample(file),
-                    file.flag("report", True), file.choice("compare", ("none", "paper"), "none"))
+    campaign = Campaign(path, base, common, variations, list(axes.content), shared_sample(file),
+                        file.flag("report", True), file.choice("compare", ("none", "paper"), "none"))
+    if campaign.kind is not biaxial_test:
+        file.fail("base", f"found {file.content['base']}, a laboratory test, expected a scene; pipeline/lab sweeps "
+                  "tests")
+    return campaign
 
 
 def base_of(file):
@@ -100,8 +112,8 @@ def shared_sample(file):
     return tuple(keys)
 
 
-def axis_values(axes, name):
-    """(label, keys) of each point of an axis."""
+def axis_values(axes, name, key=None):
+    """(label, keys) of each point of an axis, whose values are those of `key` (the axis's name, unless given)."""
     content = axes.content[name]
     if isinstance(content, dict) and content:
         variants = axes.mapping(name)
@@ -117,7 +129,7 @@ def axis_values(axes, name):
               for value in content]
     if len(set(values)) < len(values):
         axes.fail(name, f"found {', '.join(values)}, expected each value once")
-    return [(value.strip("[]"), ((name, value),)) for value in values]
+    return [(value.strip("[]"), ((key or name, value),)) for value in values]
 
 
 def merged(axes, parts):

@@ -1,5 +1,4 @@
 """Carries out a plan: what is finished is kept, what is interrupted goes on, what fails is reported at the end."""
-from . import biaxial_test as kind
 from .campaign_progress import Tally, make_campaign_progress
 from .driver import catch_signals
 from .errors import Interrupted
@@ -64,7 +63,7 @@ def make_jobs(plan):
 
 def learn_summaries(plan):
     for run in plan.runs:
-        run.summary = kind.read_summary(run.out)
+        run.summary = run.kind.read_summary(run.out)
 
 
 def exit_code(plan):

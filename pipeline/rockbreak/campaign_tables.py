@@ -7,6 +7,7 @@ import os
 from dataclasses import dataclass
 
 from . import biaxial_test as kind
+from .cases import value_at
 from .run_directory import write_text
 
 
@@ -40,7 +41,7 @@ def run_rows(campaign, plan, sample_seconds):
                "exit_code": run.code, "failure": run.failure or "", "directory": os.path.relpath(run.out, plan.out),
                "hash": run.hash}
         row |= {name: labels.get(name, "") for name in names}
-        row |= {key: plain_text(kind.value_at(run.case, key)) for key in varied_keys(plan)}
+        row |= {key: plain_text(value_at(run.case, key)) for key in varied_keys(plan)}
         row["sample"] = run.sample.out.name if run.sample else ""
         row["sample_cpu_seconds"] = sample_seconds.get(run.sample.hash, "") if run.sample else ""
         rows.append(row | (numbers_of(run.summary) if run.summary else {}))

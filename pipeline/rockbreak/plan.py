@@ -6,8 +6,9 @@ A directory is found again by its hash, so a row may be renamed, and a changed t
 """
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 
-from . import biaxial_test as kind
+from .cases import hash_of, value_at
 from .errors import BAD_INPUT, RockbreakError
 
 HASH_DIGITS = 10
@@ -18,9 +19,10 @@ class Sample:
     hash: str
     out: Path
     command: list
+    kind: ModuleType
 
     def is_finished(self):
-        return kind.sample_is_finished(self.out)
+        return self.kind.sample_is_finished(self.out)
 
 
 @dataclass
@@ -32,6 +34,7 @@ class PlannedRun:
     sample: Sample | None
     command: list
     report: bool
+    kind: ModuleType
     failure: str | None = None
     code: int = 0
     summary: dict | None = field(default=None)
@@ -39,7 +42,7 @@ class PlannedRun:
     name = property(lambda self: self.out.name)
 
     def is_finished(self):
-        return kind.is_finished(self.out, self.report)
+        return self.kind.is_finished(self.out, self.report)
 
 
 @dataclass
@@ -52,8 +55,15 @@ class Plan:
         return list({run.sample.hash: run.sample for run in self.runs if run.sample}.values())
 
 
+def joined(out, plans):
+    """Several plans of one directory as one."""
+    return Plan(out, [run for plan in plans for run in plan.runs],
+                {variation: run for plan in plans for variation, run in plan.row_runs.items()})
+
+
 def make_plan(campaign, out, threads=None):
     """Resolves every row (which validates it); starts nothing, writes nothing."""
+    kind = campaign.kind
     base_case = kind.resolve(campaign.base, campaign.common, f"{campaign.file}: base, set")
     check_shared(campaign, base_case)
     plan = Plan(out, [], {})
@@ -65,7 +75,7 @@ def make_plan(campaign, out, threads=None):
         sample = None
         sample_hash = kind.prepared_elsewhere(case)
         if sample_hash is None:
-            sample_hash = kind.hash_of(kind.sample_case(case, base_case, campaign.shared_sample))
+            sample_hash = hash_of(kind.sample_case(case, base_case, campaign.shared_sample))
             if sample_hash not in samples:
                 samples[sample_hash] = plan_sample(campaign, variation, keys, case, sample_hash, out, threads)
             sample = samples[sample_hash]
@@ -81,7 +91,7 @@ def make_plan(campaign, out, threads=None):
 
 def check_shared(campaign, base_case):
     for key in campaign.shared_sample:
-        if kind.value_at(base_case, key) is None:
+        if value_at(base_case, key) is None:
             raise RockbreakError(BAD_INPUT, f'{campaign.file}: shared_sample: found "{key}", expected a key of the '
                                  "scene that has a value")
 
@@ -94,18 +104,20 @@ def directory_of(folder, name, value):
 
 
 def plan_sample(campaign, variation, keys, case, value, out, threads):
+    kind = campaign.kind
     seen = [(axis, label) for axis, label in variation.labels
             if kind.seen_by_preparation(axis) and axis not in campaign.shared_sample and axis in dict(variation.keys)
             and axis != "effects"]
     name = type(variation)(tuple(seen), variation.keys).name if seen else "sample"
     directory = directory_of(out / "samples", name, value)
     return Sample(value, directory, kind.sample_command(campaign.base, keys, case, campaign.shared_sample, directory,
-                                                        threads))
+                                                        threads), kind)
 
 
 def plan_run(campaign, variation, keys, case, value, out, sample, threads):
     directory = directory_of(out / "runs", variation.name, value)
     if sample:
-        keys = keys | {kind.FROM: str(kind.sample_file(sample.out))}
+        keys = keys | {campaign.kind.FROM: str(campaign.kind.sample_file(sample.out))}
     return PlannedRun([variation], case, value, directory, sample,
-                      kind.run_command(campaign.base, keys, directory, campaign.report, threads), campaign.report)
+                      campaign.kind.run_command(campaign.base, keys, directory, campaign.report, threads),
+                      campaign.report, campaign.kind)

@@ -8,6 +8,8 @@ import pytest
 import yaml
 
 from conftest import REPOSITORY
+from rockbreak import biaxial_test
+from rockbreak.accuracy_measures import number_measure
 from rockbreak.accuracy_numbers import beyond, cheapest_good, floors_of, ladder_of
 from rockbreak.accuracy_study import Knob, read_study
 from rockbreak.errors import RockbreakError
@@ -34,7 +36,7 @@ def study_file(work, **content):
 # -- the file
 
 def test_ladders_share_the_runs_and_samples_of_the_base(work):
-    study = read_study(study_file(work))
+    study = read_study(study_file(work)).subjects[0]
     plan = make_plan(study.campaign, work.out)
     assert len(plan.runs) == 2 * (1 + 2 + 1), "0.5 and breakable are what the base has"
     assert len(plan.samples()) == 2
@@ -55,6 +57,9 @@ def test_ladders_share_the_runs_and_samples_of_the_base(work):
     ({"knobs": {"a": {"rung": [1, 2]}}}, 'knobs.a.rung: unknown key; did you mean "rungs"?'),
     ({"set": {"seed": 3}}, "set: found seed, expected it under seeds"),
     ({"measures": {"a": "x y"}}, 'measures.a: found "x y", expected a number of summary.json'),
+    ({"tolerances": {"a": 1}}, "tolerances.a: found no such measure, expected one of peak sin φ"),
+    ({"specimens": {"a": {}}}, "specimens: found beside seeds, expected one of them"),
+    ({"subjects": {}}, 'base: unknown key'),
 ])
 def test_bad_input_names_file_key_found_and_expected(work, content, said):
     with pytest.raises(RockbreakError) as caught:
@@ -64,7 +69,7 @@ def test_bad_input_names_file_key_found_and_expected(work, content, said):
 
 
 def test_the_study_of_dem_is_valid_and_the_base_is_a_rung_of_every_knob(tmp_path):
-    study = read_study(REPOSITORY / "configs" / "accuracy_dem.yaml")
+    study = read_study(REPOSITORY / "configs" / "accuracy_dem.yaml").subjects[0]
     plan = make_plan(study.campaign, tmp_path / "out")
     base = plan.row_runs[study.base["1"]]
     for knob in study.knobs:
@@ -74,7 +79,7 @@ def test_the_study_of_dem_is_valid_and_the_base_is_a_rung_of_every_knob(tmp_path
 
 # -- the numbers
 
-def ladder(values, cpu=(4.0, 2.0, 1.0), rounding_only=False, base=1):
+def ladder(values, cpu=(4.0, 2.0, 1.0), rounding_only=False, base=1, tolerances=None):
     """A ladder of one measure: `values` per rung, a number per seed (None: that run failed)."""
     seeds = [str(number) for number in range(len(values[0]))]
     labels = [f"r{number}" for number in range(len(values))]
@@ -82,10 +87,12 @@ def ladder(values, cpu=(4.0, 2.0, 1.0), rounding_only=False, base=1):
         summary=None if value is None else {"m": value, "n": 2.0, "cpu_seconds": seconds, "contact_steps": 7},
         failure="flew off" if value is None else None, sample=None)
         for label, row, seconds in zip(labels, values, cpu) for seed, value in zip(seeds, row)}
-    study = SimpleNamespace(seeds=seeds, measures={"m": ("m", None), "m / n": ("m", "n")},
-                            base={seed: (labels[base], seed) for seed in seeds})
-    knob = Knob("knob", labels, {key: key for key in runs}, rounding_only)
-    return ladder_of(knob, study, SimpleNamespace(row_runs=runs), {})
+    subject = SimpleNamespace(name="", specimens=seeds, tolerances=tolerances or {},
+                              measures=[number_measure("m", "m"), number_measure("m / n", "m", "n")],
+                              base={seed: (labels[base], seed) for seed in seeds})
+    knob = Knob("knob", labels, {key: key for key in runs}, {(label, seed): (labels[0], seed) for label, seed in runs},
+                rounding_only)
+    return ladder_of(knob, subject, biaxial_test, SimpleNamespace(row_runs=runs), {})
 
 
 def test_errors_are_paired_and_the_scatter_is_that_of_the_seeds():
@@ -95,7 +102,7 @@ def test_errors_are_paired_and_the_scatter_is_that_of_the_seeds():
     assert found.scatter["m"] == pytest.approx(((2.0 + 2.0 + 0.845) / 3) ** 0.5)
     assert found.rungs[1].cells["m / n"].error == pytest.approx(0.05)
     assert [(rung.is_reference, rung.is_base) for rung in found.rungs] == [(True, False), (False, True), (False, False)]
-    assert [rung.cpu_seconds for rung in found.rungs] == [4.0, 2.0, 1.0]
+    assert [rung.cost for rung in found.rungs] == [4.0, 2.0, 1.0]
 
 
 def test_the_cheapest_good_rung_stays_within_the_scatter():
@@ -103,6 +110,12 @@ def test_the_cheapest_good_rung_stays_within_the_scatter():
     assert cheapest_good(scattered, {}).label == "r1"
     assert beyond(scattered.rungs[2], scattered, {}) == ["m", "m / n"]
     assert cheapest_good(scattered, {"m": 0.6, "m / n": 0.3}).label == "r2", "rounding alone does as much"
+
+
+def test_a_tolerance_decides_in_place_of_the_scatter():
+    found = ladder([[1.0, 1.2], [1.05, 1.25], [1.08, 1.28]], tolerances={"m": 0.06, "m / n": 0.06})
+    assert beyond(found.rungs[2], found, {}) == ["m"], "the scatter is 0.14"
+    assert cheapest_good(found, {"m": 1.0}).label == "r1"
 
 
 def test_a_rung_that_failed_is_no_candidate_and_pairs_only_what_there_is():
@@ -133,10 +146,11 @@ def test_a_study_ends_in_a_table_a_page_and_a_figure_per_knob(work):
         "1", "0", "0", "1"]
     page = (work.out / "accuracy.md").read_text()
     assert "| **0.5** (base)" in page and "| 0.45 (reference)" in page
-    assert "the base, 0.5 (" in page and "stands out of the scatter in peak sin φ" in page
+    assert "the base, 0.5 (" in page and "is not within the scatter in peak sin φ" in page
     for name in ("peak", "solid"):
         assert f"figures/accuracy_{name}.svg" in page
         assert (work.out / "figures" / f"accuracy_{name}.svg").read_text().lstrip().startswith("<?xml")
+        assert f'aria-label="{name}: error against time"' in (work.out / "accuracy.html").read_text()
         assert (work.out / "figures" / f"accuracy_{name}.png").read_bytes().startswith(b"\x89PNG")
     assert (work.out / "campaign.csv").exists()
 
