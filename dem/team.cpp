@@ -1,5 +1,11 @@
 #include "dem/team.hpp"
 
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "common/error.hpp"
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -29,12 +35,23 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint
 }  // namespace
 
 Team::Team(int threads) {
-  for (int member = 1; member < threads; ++member) {
-    workers_.emplace_back([this, member] { work(static_cast<std::size_t>(member)); });
+  try {
+    for (int member = 1; member < threads; ++member) {
+      workers_.emplace_back([this, member] { work(static_cast<std::size_t>(member)); });
+    }
+  } catch (const std::system_error& error) {
+    const std::size_t started = workers_.size() + 1;
+    end();
+    throw common::bad_input(
+        fmt::format("threads: found {}, but only {} could be started ({})", threads, started, error.what()));
   }
 }
 
 Team::~Team() {
+  end();
+}
+
+void Team::end() {
   ending_ = true;
   started_.fetch_add(1, std::memory_order_release);
   started_.notify_all();

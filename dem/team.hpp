@@ -20,7 +20,7 @@ class Team {
   /// Entries of one block: some microseconds of work, and few enough blocks that their sums cost nothing.
   static constexpr std::size_t kBlock = 64;
 
-  /// `threads` in all, the calling one included.
+  /// `threads` in all, the calling one included. Throws bad_input if the system does not give as many.
   explicit Team(int threads);
   ~Team();
   Team(const Team&) = delete;
@@ -55,6 +55,7 @@ class Team {
   };
   static std::size_t block_count(std::size_t entries) { return (entries + kBlock - 1) / kBlock; }
 
+  void end();
   void run(const Loop& loop);
   void work(std::size_t member);
   void do_share(std::size_t member) const;

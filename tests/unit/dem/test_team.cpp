@@ -1,9 +1,14 @@
 // Loops in blocks, and the engine that runs on them: the same bits for any number of threads.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
 #include "common/config/scene.hpp"
+#include "common/error.hpp"
 #include "dem/engine.hpp"
 #include "dem/stages/control.hpp"
 #include "dem/stages/generate.hpp"
@@ -25,6 +30,29 @@ TEST_CASE("a team visits every entry once, loop after loop") {
     }
   }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they need address space of their own
+TEST_CASE("a team that cannot have all its threads says so, and ends those that it has") {
+  // Address space for some stacks only. In a process of its own: the limit stays.
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const rlimit limit{rlim_t{1} << 30, rlim_t{1} << 30};
+    bool refused = false;
+    if (setrlimit(RLIMIT_AS, &limit) == 0) {
+      try {
+        dem::Team team(1024);
+      } catch (const common::Error& error) {
+        refused = error.code() == common::ExitCode::bad_input;
+      }
+    }
+    _exit(refused ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+}
+#endif
 
 TEST_CASE("sums over blocks have the same bits for any number of threads") {
   std::vector<double> values(10000);
