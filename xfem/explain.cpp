@@ -81,7 +81,7 @@ std::string explain(const common::Scene& scene) {
 std::string explain(const common::LabTest& test) {
   return "# resolved configuration\n" + common::to_yaml(test) + "\n# model of the specimen\n" +
          model_choices(test.material, test.breakage, test.mesh_nodes) +
-         "\n# written\n  summary.json  result.h5  specimen.svg\n";
+         "\n# written\n  summary.json  result.h5  specimen.svg  case.yaml\n";
 }
 
 }  // namespace xfem

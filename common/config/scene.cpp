@@ -266,7 +266,7 @@ Specification specification(Scene& scene) {
       {"effects", "-", "what exists in the run; what is not named costs nothing", effects, UsedBy::both},
       [&scene, effects](const Value& value) { scene.effects = read_effects(value, effects); },
       [&scene](UsedBy executable) { return print_effects(scene.effects, executable); });
-  bind_material(keys, scene.material, true);
+  bind_material(keys, scene.material, scene.file);
   bind_assembly(keys, scene.assembly);
   bind_contact(keys, scene);
   bind_preparation(keys, scene.preparation);
@@ -392,7 +392,7 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) 
   scene.file = file;
   Specification keys = specification(scene);
   keys.read(load_document(file));
-  for (const std::string& assignment : overrides) keys.set(assignment);
+  keys.set(overrides);
   keys.finish();
   scene.preparation.from = absolute_name(keys, "preparation.from", scene.preparation.from, file);
   scene.assembly.shapes.file = absolute_name(keys, "assembly.shapes.file", scene.assembly.shapes.file, file);

@@ -28,6 +28,8 @@ struct Effects {
 };
 
 struct MaterialOptions {
+  std::string name;             ///< of the rock; empty: none given
+  std::string source;           ///< of its numbers
   double density = 2500;        ///< [kg/m^3]
   double sigma_ci = 150e6;      ///< uniaxial compressive strength [Pa]
   double m_i = 25;              ///< Hoek-Brown [-]

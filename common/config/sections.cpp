@@ -2,11 +2,13 @@
 
 namespace common {
 
-void bind_material(Specification& keys, MaterialOptions& material, bool with_density) {
-  if (with_density) {
-    keys.number("material.density", material.density, kPositive, "kg/m^3", UsedBy::dem,
-                "density of the solid (Table 1)");
-  }
+void bind_material(Specification& keys, MaterialOptions& material, const std::filesystem::path& case_file) {
+  keys.section_file("material.rock", case_file.parent_path(),
+                    "a file with keys of material (as in configs/rocks), relative to this one's folder; keys given "
+                    "beside it go before; here it has been read");
+  keys.text("material.name", material.name, "a name", UsedBy::neither, "of the rock, for people");
+  keys.text("material.source", material.source, "a text", UsedBy::neither, "where the rock's numbers are from");
+  keys.number("material.density", material.density, kPositive, "kg/m^3", UsedBy::dem, "density of the solid (Table 1)");
   keys.number("material.sigma_ci", material.sigma_ci, kPositive, "Pa", UsedBy::xfem,
               "uniaxial compressive strength of the intact rock, Eq. 4 (Table 1)");
   keys.number("material.m_i", material.m_i, kPositive, "-", UsedBy::xfem,

@@ -5,8 +5,9 @@
 
 namespace common {
 
-/// material.{sigma_ci, m_i, young_modulus, poisson_ratio, plane_stress}; `density` as well where `with_density`.
-void bind_material(Specification& keys, MaterialOptions& material, bool with_density);
+/// material.{rock, name, source, density, sigma_ci, m_i, young_modulus, poisson_ratio, plane_stress}; a rock's file is
+/// sought from the folder of `case_file`.
+void bind_material(Specification& keys, MaterialOptions& material, const std::filesystem::path& case_file);
 
 /// breakage.{initiation_radius, minimum_fragment, minimum_area, max_cracks, literal}: how one particle breaks.
 void bind_particle_breakage(Specification& keys, BreakageOptions& breakage);

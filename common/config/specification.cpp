@@ -135,6 +135,18 @@ void Specification::custom(Key key, Reader read, Printer print) {
   bindings_.push_back({std::move(key), std::move(read), std::move(print)});
 }
 
+void Specification::section_file(const std::string& path, const std::filesystem::path& folder,
+                                 const std::string& description) {
+  const std::string expected = "the name of a file";
+  custom(
+      {path, "-", description, expected, UsedBy::neither},
+      [=](const Value& value) {
+        if (!value.is_null() && !value.is_scalar()) refuse(value, path, expected);
+      },
+      [](UsedBy) { return in_quotes(""); });
+  section_files_[path] = folder;
+}
+
 void Specification::shorthand(const std::string& section, std::function<Value(const Value&)> expand) {
   shorthands_[section] = std::move(expand);
 }
@@ -178,6 +190,7 @@ void Specification::walk(const Value& value, const std::string& path) {
     given_[path] = value.where;
     try {
       binding->read(value);
+      if (section_files_.contains(path) && !value.text.empty()) walk_file(value, path);
     } catch (const Error& error) {
       errors_.emplace_back(error.what());
     }
@@ -194,7 +207,12 @@ void Specification::walk(const Value& value, const std::string& path) {
     return;
   }
   std::map<std::string, std::string> seen;
-  for (std::size_t i = 0; i < value.keys.size(); ++i) {
+  std::vector<std::size_t> order;  // a file of the section first, so that the keys beside it override it
+  for (const bool files : {true, false}) {
+    for (std::size_t i = 0; i < value.keys.size(); ++i)
+      if (section_files_.contains(below(path, value.keys[i].text)) == files) order.push_back(i);
+  }
+  for (const std::size_t i : order) {
     const Value& key = value.keys[i];
     const auto [first, is_new] = seen.emplace(key.text, key.where);
     const std::string child = below(path, key.text);
@@ -207,6 +225,22 @@ void Specification::walk(const Value& value, const std::string& path) {
       walk(value.items[i], child);
     }
   }
+}
+
+void Specification::walk_file(const Value& value, const std::string& path) {
+  if (inside_file_) refuse(value, path, "the keys themselves: this file is named by another one");
+  const bool overridden = value.where.starts_with("--set ");
+  const std::filesystem::path folder = overridden ? std::filesystem::current_path() : section_files_.at(path);
+  const std::filesystem::path file = (std::filesystem::absolute(folder) / value.text).lexically_normal();
+  Value keys;
+  try {
+    keys = load_document(file);
+  } catch (const Error& error) {
+    throw bad_input(value.where + ": " + path + ": " + error.what());
+  }
+  inside_file_ = true;
+  walk(keys, path.substr(0, path.rfind('.')));
+  inside_file_ = false;
 }
 
 void Specification::read(const Value& document) {
@@ -239,6 +273,16 @@ void Specification::set(const std::string& assignment) {
     walk(parse_override_value(assignment.substr(equal + 1), place), path);
   } catch (const Error& error) {
     errors_.emplace_back(error.what());
+  }
+}
+
+void Specification::set(const Overrides& assignments) {
+  const auto names_file = [this](const std::string& assignment) {
+    return section_files_.contains(assignment.substr(0, assignment.find('=')));
+  };
+  for (const bool files : {true, false}) {
+    for (const std::string& assignment : assignments)
+      if (names_file(assignment) == files) set(assignment);
   }
 }
 

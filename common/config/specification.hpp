@@ -77,6 +77,10 @@ class Specification {
              std::function<int()> get, UsedBy used_by, const std::string& description);
   /// Any other kind of key. `read` throws bad_input for a value that it does not take (see `refuse`).
   void custom(Key key, Reader read, Printer print);
+  /// A key that names a file with keys of the section in which it stands, relative to `folder` (in --set: to the
+  /// working directory). The keys that stand beside it go before the file's, wherever they stand; it prints as "" since
+  /// they are all resolved.
+  void section_file(const std::string& path, const std::filesystem::path& folder, const std::string& description);
   /// A section that may be given as something else than a map: `expand` turns that into the map that it stands for.
   void shorthand(const std::string& section, std::function<Value(const Value&)> expand);
 
@@ -84,6 +88,8 @@ class Specification {
   void read(const Value& document);
   /// Applies `path=value`, the same way.
   void set(const std::string& assignment);
+  /// Applies them in order, but files of sections (see section_file) before all others.
+  void set(const Overrides& assignments);
   /// An error found between keys, at the place where the first of `paths` that was given stands.
   void fail(const std::vector<std::string>& paths, const std::string& message);
   /// Throws bad_input with all errors, one in a line, in the order in which they were found; nothing if there is none.
@@ -107,14 +113,17 @@ class Specification {
   };
 
   void walk(const Value& value, const std::string& path);
+  void walk_file(const Value& value, const std::string& path);
   const Binding* find(const std::string& path) const;
   std::vector<std::string> names_in(const std::string& section) const;
   std::string unknown_key(const std::string& name, const std::string& section) const;
 
   std::vector<Binding> bindings_;
   std::map<std::string, std::function<Value(const Value&)>> shorthands_;
-  std::map<std::string, std::string> given_;  ///< path to place
-  std::string document_;                      ///< place of the document, for errors between keys that are not given
+  std::map<std::string, std::filesystem::path> section_files_;  ///< path to folder
+  bool inside_file_ = false;                                    ///< of a section
+  std::map<std::string, std::string> given_;                    ///< path to place
+  std::string document_;  ///< place of the document, for errors between keys that are not given
   std::vector<std::string> errors_;
 };
 

@@ -1,10 +1,16 @@
 // Brazilian test: a disc between two opposite forces (Jaeger, Cook & Zimmerman 2007, section 7.5).
 //
-// At the centre of a disc of diameter D under the line load P, s3 = -2 P / (pi D) and s1 = 3 |s3|. There Hoek-Brown
-// fails at P = (pi D sigma_t / 2) 2 m / (m + sqrt(m^2 + 64)): below the textbook's pi D sigma_t / 2, and by shear for
-// m < 8. The disc is a regular polygon with its corners on the circle; the forces act at its top and bottom corners,
-// exactly D apart, so the number of sides must be even. A mesh has a node at every corner: where its elements are
-// larger than the sides that were asked for, the disc gets fewer, so that the mesh stays even.
+// At the centre of a disc of diameter D under the line load P, s3 = -2 P / (pi D) and s1 = 3 |s3|. With x = |s3| /
+// sigma_ci, Hoek-Brown (Eq. 4) there reads (4 x)^2 = 1 - m x, so x = 2 / (m + sqrt(m^2 + 64)): P = (pi D sigma_t / 2)
+// 2 m / (m + sqrt(m^2 + 64)). That holds for every m; the mode is tension for m >= 8, where Fairhurst's tangent point
+// m + 1 - 2 sqrt(m + 1) reaches 3, and shear below.
+//
+// The disc is a regular polygon with its corners on the circle; the forces act at its top and bottom corners, exactly D
+// apart, so the number of sides must be even. A mesh has a node at every corner: where its elements are larger than the
+// sides that were asked for, the disc gets fewer, so that the mesh stays even. A polygon of few sides is held to the
+// disc's theory; how far it is from it, the README says.
+#include "xfem/lab/brazilian.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +18,7 @@
 #include <numbers>
 
 #include "common/error.hpp"
-#include "xfem/lab/laboratory.hpp"
+#include "xfem/lab/kinds.hpp"
 
 namespace xfem {
 
@@ -29,32 +35,35 @@ int sides_for(int nodes, int wanted) {
 
 }  // namespace
 
+double disc_load(const common::MaterialOptions& material, double diameter) {
+  const double m = material.m_i;
+  return 0.5 * std::numbers::pi * diameter * material.sigma_ci / m * 2 * m / (m + std::sqrt(m * m + 64));
+}
+
 LabSetup brazilian_test(const common::LabTest& test) {
+  require_loading(test, {"patch"});
   if (test.specimen.sides < 4 || test.specimen.sides % 2 != 0)
     throw common::bad_input(
         fmt::format("specimen.sides: found {}, expected an even number of at least 4", test.specimen.sides));
-  if (test.loading.confining_stress != 0 || test.loading.platen_friction != 0)
-    throw common::bad_input("loading: a brazilian test has no confining_stress and no platen_friction");
 
   LabSetup setup;
-  setup.test = "brazilian";
   const int sides = sides_for(test.mesh_nodes, test.specimen.sides);
   const double radius = 0.5 * test.specimen.diameter;
   for (int k = 0; k < sides; ++k) {
     const Vec2 corner = radius * (common::Rotation(2 * std::numbers::pi * k / sides) * Vec2{0, -1});
     setup.outline.push_back(2 * k == sides ? Vec2{0, radius} : corner);
   }
+  setup.dimensions = {{"diameter", test.specimen.diameter}, {"sides", sides}};
 
-  const double m = test.material.m_i;
-  const double tensile = std::numbers::pi * radius * test.material.sigma_ci / m;
-  setup.theory_load = tensile * 2 * m / (m + std::sqrt(m * m + 64));
-  setup.theory = {{"first_failure_load", setup.theory_load},
-                  {"tensile_load", tensile},
-                  {"tensile_strength", test.material.sigma_ci / m},
+  const double strength = test.material.sigma_ci / test.material.m_i;
+  setup.theory_load = disc_load(test.material, test.specimen.diameter);
+  setup.theory = {{"first_failure_load", *setup.theory_load},
+                  {"tensile_load", std::numbers::pi * radius * strength},
+                  {"tensile_strength", strength},
                   {"fracture_angle_deg", 0}};
-  setup.unit_load = setup.theory_load;
+  setup.unit_load = *setup.theory_load;
   setup.load_patch = test.loading.patch;
-  setup.loads = [radius, load = setup.unit_load](const Mesh&) {
+  setup.loads = [radius, load = setup.unit_load](const IntactModel&) {
     return std::vector<Load>{{{0, radius}, {0, -load}}, {{0, -radius}, {0, load}}};
   };
   return setup;

@@ -4,22 +4,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <map>
 #include <string>
 
-#include "common/io/immutable_file.hpp"
 #include "xfem/lab/report.hpp"
 
 namespace xfem {
 
 namespace {
 
-constexpr double kWidth = 620, kMargin = 40, kLegend = 110;
+constexpr double kPanel = 430, kMargin = 44, kHead = 92, kLegend = 96;
+constexpr int kColours = 64;
+/// Above this the mesh lines would cover the field.
+constexpr std::size_t kMostDrawnElements = 4000;
 
-/// Light to dark blue for 0 to 1, by linear interpolation between five colours.
+/// Viridis (van der Walt & Smith 2015), 0 dark to 1 light: safe for colour-blind readers and in grey.
 std::string colour(double value) {
-  constexpr std::array<std::array<double, 3>, 5> kScale{
-      {{247, 251, 255}, {198, 219, 239}, {107, 174, 214}, {33, 113, 181}, {8, 48, 107}}};
+  constexpr std::array<std::array<double, 3>, 9> kScale{{{68, 1, 84},
+                                                         {71, 44, 122},
+                                                         {59, 81, 139},
+                                                         {44, 113, 142},
+                                                         {33, 144, 141},
+                                                         {39, 173, 129},
+                                                         {92, 200, 99},
+                                                         {170, 220, 50},
+                                                         {253, 231, 37}}};
   const double position = std::clamp(value, 0.0, 1.0) * (kScale.size() - 1);
   const auto low = std::min<std::size_t>(static_cast<std::size_t>(position), kScale.size() - 2);
   const double part = position - static_cast<double>(low);
@@ -32,75 +41,201 @@ std::string colour(double value) {
 /// From the specimen's metres (y up) to the figure's pixels (y down).
 struct Canvas {
   Vec2 low, high;
-  double scale;
+  double scale = 1, left = 0;
+  Vec2 pixel(const Vec2& p) const {
+    return {left + scale * (p.x() - low.x()), kHead + kMargin + scale * (high.y() - p.y())};
+  }
   std::string at(const Vec2& p) const {
-    return fmt::format("{:.2f},{:.2f}", kMargin + scale * (p.x() - low.x()), kMargin + 40 + scale * (high.y() - p.y()));
+    const Vec2 q = pixel(p);
+    return fmt::format("{:.1f} {:.1f}", q.x(), q.y());
   }
-  std::string polygon(PolygonView vertices, const std::string& style) const {
-    std::string points;
-    for (const Vec2& v : vertices) points += at(v) + " ";
-    return fmt::format("<polygon points=\"{}\" {}/>\n", points, style);
+  std::string closed(PolygonView vertices) const {
+    std::string text;
+    for (const Vec2& v : vertices) text += (text.empty() ? "M" : "L") + at(v);
+    return text + "Z";
   }
-  double bottom() const { return kMargin + 40 + scale * (high.y() - low.y()); }
-  double right() const { return kMargin + scale * (high.x() - low.x()); }
+  double width() const { return scale * (high.x() - low.x()); }
+  double bottom() const { return kHead + kMargin + scale * (high.y() - low.y()); }
 };
 
-std::string legend(const Canvas& canvas) {
-  const double x = canvas.right() + 30, top = kMargin + 60, height = 200;
-  constexpr int kSteps = 40;
+std::string path(const std::string& data, const std::string& style) {
+  return fmt::format("<path d=\"{}\" {}/>\n", data, style);
+}
+
+std::string label(double x, double y, const std::string& style, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, style, text);
+}
+
+/// All elements of one colour are one path, which keeps fine meshes small.
+std::string field(const Canvas& canvas, const LabResult& result) {
+  const std::vector<double> values = utilization(result);
+  std::map<int, std::string> triangles;
+  std::string edges;
+  for (std::size_t e = 0; e < values.size(); ++e) {
+    const auto& t = result.mesh.triangles[e];
+    const std::array<Vec2, 3> corners{result.mesh.nodes[t[0]], result.mesh.nodes[t[1]], result.mesh.nodes[t[2]]};
+    const std::string outline = canvas.closed(corners);
+    triangles[std::clamp(static_cast<int>(values[e] * kColours), 0, kColours - 1)] += outline;
+    if (values.size() <= kMostDrawnElements) edges += outline;
+  }
   std::string text;
-  for (int k = 0; k < kSteps; ++k)
-    text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.2f}\" width=\"16\" height=\"{:.2f}\" fill=\"{}\"/>\n", x,
-                        top + height * k / kSteps, height / kSteps + 0.5, colour(1 - (k + 0.5) / kSteps));
-  for (double tick : {0.0, 0.5, 1.0})
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{:.1f}</text>\n", x + 22, top + height * (1 - tick) + 4, tick);
-  text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">1 / lambda</text>\n", x, top - 12);
+  for (const auto& [level, data] : triangles) {
+    const std::string shade = colour((level + 0.5) / kColours);
+    text += path(data, fmt::format("fill=\"{0}\" stroke=\"{0}\" stroke-width=\"0.5\"", shade));
+  }
+  if (!edges.empty())
+    text += path(edges, "fill=\"none\" stroke=\"white\" stroke-opacity=\"0.28\" stroke-width=\"0.5\"");
   return text;
+}
+
+/// A push ends at its point, a pull starts there.
+std::string arrows(const Canvas& canvas, const LabSetup& setup, const std::vector<Load>& loads) {
+  double largest = 0;
+  for (const Load& load : loads) largest = std::max(largest, load.force.norm());
+  const double longest = loads.size() > 20 ? 16 : 30;
+  std::string text;
+  for (const Load& load : loads) {
+    const double length = largest > 0 ? longest * load.force.norm() / largest : 0;
+    if (length < 2) continue;
+    const Vec2 along{load.force.x() / load.force.norm(), -load.force.y() / load.force.norm()};
+    const bool pulls = load.force.dot(load.point) > 0;
+    const Vec2 point = canvas.pixel(load.point);
+    const Vec2 head = pulls ? Vec2(point + length * along) : point, tail = head - length * along;
+    const Vec2 side{-along.y(), along.x()};
+    const double barb = std::min(5.0, 0.5 * length);
+    const Vec2 one = head - barb * along + 0.5 * barb * side, other = head - barb * along - 0.5 * barb * side;
+    text += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}", tail.x(), tail.y(),
+                        head.x(), head.y(), one.x(), one.y(), head.x(), head.y(), other.x(), other.y());
+  }
+  return path(text,
+              fmt::format("fill=\"none\" stroke=\"#1f2933\" stroke-width=\"{}\"", setup.load_patch > 0 ? 2 : 1.4));
+}
+
+std::string cracks(const Canvas& canvas, const std::vector<Crack>& all) {
+  std::string lines;
+  for (const Crack& crack : all)
+    for (std::size_t i = 0; i < crack.points.size(); ++i)
+      lines += (i == 0 ? "M" : "L") + canvas.at(crack.points[i].position);
+  if (lines.empty()) return "";
+  return path(lines, "fill=\"none\" stroke=\"white\" stroke-width=\"5\" stroke-linejoin=\"round\"") +
+         path(lines, "fill=\"none\" stroke=\"#d55e00\" stroke-width=\"2.6\" stroke-linejoin=\"round\"");
+}
+
+std::string fragments(const Canvas& canvas, const LabSetup& setup, const BreakageResult& breakage) {
+  if (!breakage.path)
+    return path(canvas.closed(setup.outline), "fill=\"#eef1f4\" stroke=\"#1f2933\" stroke-width=\"1.5\"") +
+           cracks(canvas, breakage.cracks);
+  std::string text;
+  const Vec2 line = (*breakage.path)[1] - (*breakage.path)[0];
+  const Vec2 apart = common::perpendicular(line) / line.norm() * (9 / canvas.scale);
+  const double whole = common::area(setup.outline);
+  for (const bool is_left : {true, false}) {
+    Polygon moved = is_left ? breakage.left : breakage.right;
+    for (Vec2& v : moved) v += is_left ? apart : Vec2(-apart);
+    text += path(canvas.closed(moved),
+                 fmt::format("fill=\"{}\" stroke=\"#1f2933\" stroke-width=\"1.5\"", is_left ? "#cfe4f2" : "#fbe3c4"));
+    const Vec2 middle = canvas.pixel(common::centroid(moved));
+    text += label(middle.x(), middle.y() + 4, "text-anchor=\"middle\"",
+                  fmt::format("{:.1f} %", 100 * common::area(moved) / whole));
+  }
+  return text;
+}
+
+std::string legend(double x, double top) {
+  const double height = 220;
+  std::string text = label(x, top - 14, "", "1 / λ");
+  for (int k = 0; k < kColours; ++k)
+    text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.2f}\" width=\"16\" height=\"{:.2f}\" fill=\"{}\"/>\n", x,
+                        top + height * k / kColours, height / kColours + 0.4, colour(1 - (k + 0.5) / kColours));
+  for (const double tick : {0.0, 0.25, 0.5, 0.75, 1.0})
+    text += label(x + 22, top + height * (1 - tick) + 4, "", fmt::format("{:.2f}", tick));
+  return text;
+}
+
+std::string headline(const LabSetup& setup, const LabResult& result, const common::LabTest& test) {
+  std::string name = setup.test;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  std::string title = fmt::format("{} test", name);
+  if (!test.material.name.empty()) title += ", " + test.material.name;
+  title += fmt::format(": σci = {:.4g} MPa, m = {:.3g}, {} nodes", test.material.sigma_ci / 1e6, test.material.m_i,
+                       result.mesh.nodes.size());
+  const auto load = [&](double value) {
+    if (!std::isfinite(value)) return std::string("none");
+    std::string text = fmt::format("{:.4g} kN/m", value / 1e3);
+    if (setup.theory_load) text += fmt::format(" = {:.3f} of theory", value / *setup.theory_load);
+    return text;
+  };
+  const std::optional<double> angle = fracture_angle_degrees(result.breakage);
+  const char* mode = result.first_failure_mode == FailureMode::tension ? "tension"
+                     : result.first_failure_mode == FailureMode::shear ? "shear"
+                                                                       : "none";
+  std::string held;
+  if (setup.held_load > 0)
+    held = fmt::format(" · confining stress {:.4g} MPa held", test.loading.confining_stress / 1e6);
+  return label(kMargin, 30, "font-size=\"16\" font-weight=\"600\"", title) +
+         label(kMargin, 52, "",
+               fmt::format("first failure at {} ({}) · breakage at {}", load(result.first_failure_load), mode,
+                           load(result.breakage_load))) +
+         label(kMargin, 72, "fill=\"#52606d\"",
+               (angle ? fmt::format("breakage line {:.1f}° from the load axis", *angle)
+                      : std::string("not broken at the largest load")) +
+                   held);
 }
 
 }  // namespace
 
-void write_lab_figure(const std::filesystem::path& file, const LabSetup& setup, const LabResult& result) {
-  Canvas canvas{setup.outline[0], setup.outline[0], 0};
+std::vector<double> utilization(const LabResult& result) {
+  std::vector<double> values;
+  for (const Stress& stress : result.averaged_stress) {
+    const PrincipalStress p = principal(stress);
+    values.push_back(1 / result.rock.load_factor(p.s1, p.s3));
+  }
+  return values;
+}
+
+std::string lab_figure(const LabSetup& setup, const LabResult& result, const common::LabTest& test) {
+  Canvas canvas{setup.outline[0], setup.outline[0]};
   for (const Vec2& v : setup.outline) {
     canvas.low = canvas.low.cwiseMin(v);
     canvas.high = canvas.high.cwiseMax(v);
   }
-  canvas.scale = (kWidth - 2 * kMargin - kLegend) /
-                 std::max(canvas.high.x() - canvas.low.x(), 0.7 * (canvas.high.y() - canvas.low.y()));
-
-  std::string body;
-  const HoekBrown rock = result.rock;
-  for (std::size_t e = 0; e < result.mesh.triangles.size(); ++e) {
-    const auto& t = result.mesh.triangles[e];
-    const std::array<Vec2, 3> corners{result.mesh.nodes[t[0]], result.mesh.nodes[t[1]], result.mesh.nodes[t[2]]};
-    const PrincipalStress p = principal(result.averaged_stress[e]);
-    body += canvas.polygon(corners, fmt::format("fill=\"{}\" stroke=\"#9aa5b1\" stroke-width=\"0.4\"",
-                                                colour(1 / rock.load_factor(p.s1, p.s3))));
+  const Vec2 extent = canvas.high - canvas.low;
+  canvas.scale = kPanel / std::max(extent.x(), extent.y());
+  canvas.left = kMargin;
+  Canvas right = canvas;
+  // Flat specimens stand below each other, others side by side.
+  const bool below = extent.x() > 2 * extent.y();
+  std::string second;
+  double width = 0, height = 0;
+  const auto shifted = [](const std::string& body, double dy) {
+    return fmt::format("<g transform=\"translate(0 {:.1f})\">\n{}</g>\n", dy, body);
+  };
+  if (below) {
+    const double down = canvas.bottom() - kHead + 20;
+    second = shifted(fragments(right, setup, result.breakage), down);
+    width = canvas.left + canvas.width() + kMargin + kLegend;
+    height = std::max(canvas.bottom() + down + kMargin, kHead + 300);
+  } else {
+    right.left = canvas.left + canvas.width() + 2 * kMargin;
+    second = fragments(right, setup, result.breakage);
+    width = right.left + right.width() + kMargin + kLegend;
+    height = canvas.bottom() + kMargin;
   }
-  const BreakageResult& breakage = result.breakage;
-  if (breakage.path)
-    for (const Polygon* fragment : {&breakage.left, &breakage.right})
-      body += canvas.polygon(*fragment, "fill=\"none\" stroke=\"black\" stroke-width=\"1.6\"");
-  else
-    body += canvas.polygon(setup.outline, "fill=\"none\" stroke=\"black\" stroke-width=\"1.6\"");
-  for (const Crack& crack : breakage.cracks) {
-    std::string points;
-    for (const CrackPoint& p : crack.points) points += canvas.at(p.position) + " ";
-    body += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"#d62728\" stroke-width=\"2.4\"/>\n", points);
-  }
-
-  const double width = canvas.right() + kLegend + kMargin, height = canvas.bottom() + kMargin;
-  const std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"white\"/>\n"
-      "<text x=\"{2}\" y=\"26\" font-size=\"15\">{3} test, {4} nodes</text>\n"
-      "<text x=\"{2}\" y=\"44\">first failure {5:.4f}, breakage {6:.4f} of theory</text>\n"
-      "<text x=\"{2}\" y=\"60\" fill=\"#555\">colour: 1 / lambda at first failure; cracks red, fragments black</text>"
-      "\n{7}{8}</svg>\n",
-      width, height, kMargin, setup.test, result.mesh.nodes.size(), result.first_failure_load / setup.theory_load,
-      result.breakage_load / setup.theory_load, body, legend(canvas));
-  common::write_atomically(file, std::as_bytes(std::span(text)), {});
+  width = std::max(width, 690.0);
+  const std::string soft = "fill=\"#52606d\"";
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+             "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\" fill=\"#1f2933\">\n"
+             "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"white\"/>\n",
+             width, height) +
+         headline(setup, result, test) + field(canvas, result) +
+         path(canvas.closed(setup.outline), "fill=\"none\" stroke=\"#1f2933\" stroke-width=\"1.2\"") +
+         cracks(canvas, result.breakage.cracks) + arrows(canvas, setup, result.loads) + second +
+         legend(width - kLegend, kHead + kMargin + 14) +
+         label(kMargin, height - 10, soft + " font-size=\"11\"",
+               "colour: 1 / λ of the averaged stress at first failure (1: fails); orange: cracks; arrows: load") +
+         "</svg>\n";
 }
 
 }  // namespace xfem

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "xfem/lab/first_failure.hpp"
+#include "xfem/lab/kinds.hpp"
 #include "xfem/lab/report.hpp"
 #include "xfem/solve_frame.hpp"
 
@@ -17,18 +19,61 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// First failure is met from just above, so that rounding does not decide whether the crack starts.
 constexpr double kJustAbove = 1e-9;
 
-LabSetup setup_of(const common::LabTest& test) {
-  switch (test.test) {
-    case common::LabTestKind::brazilian:
-      return brazilian_test(test);
-    case common::LabTestKind::uniaxial:
-      return uniaxial_test(test);
-    default:
-      throw common::bad_input("test: this kind cannot be run; expected one of brazilian, uniaxial");
-  }
+/// The held loads, and the growing ones times a factor.
+std::vector<Load> total(const std::vector<Load>& held, double factor, const std::vector<Load>& growing) {
+  std::vector<Load> loads = held;
+  for (const Load& load : growing) loads.push_back({load.point, factor * load.force});
+  return loads;
 }
 
 }  // namespace
+
+LabSetup lab_setup(const common::LabTest& test) {
+  using Kind = common::LabTestKind;
+  LabSetup setup;
+  switch (test.test) {
+    case Kind::brazilian:
+      setup = brazilian_test(test);
+      break;
+    case Kind::uniaxial:
+      setup = uniaxial_test(test);
+      break;
+    case Kind::confined:
+      setup = confined_test(test);
+      break;
+    case Kind::tension:
+      setup = tension_test(test);
+      break;
+    case Kind::bending:
+      setup = bending_test(test);
+      break;
+    case Kind::point_load:
+      setup = point_load_test(test);
+      break;
+    case Kind::multi_contact:
+      setup = multi_contact_test(test);
+      break;
+  }
+  setup.test = name_of(test.test);
+  return setup;
+}
+
+void require_loading(const common::LabTest& test, const std::vector<std::string>& used) {
+  const common::LabLoading& given = test.loading;
+  const common::LabLoading none;
+  const auto check = [&](const std::string& name, bool is_default) {
+    if (is_default || std::find(used.begin(), used.end(), name) != used.end()) return;
+    throw common::bad_input(fmt::format("{}: loading.{}: found a value, expected none: a {} test does not use it",
+                                        test.file.string(), name, name_of(test.test)));
+  };
+  check("confining_stress", given.confining_stress == none.confining_stress);
+  check("platen_friction", given.platen_friction == none.platen_friction);
+  check("patch", given.patch == none.patch);
+  check("direction", given.direction == none.direction);
+  check("contacts", given.contacts == none.contacts);
+  check("friction", given.friction == none.friction);
+  check("points", given.points.empty());
+}
 
 LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const auto start = std::chrono::steady_clock::now();
@@ -36,44 +81,41 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   parameters.load_patch = parameters.literal ? 0 : setup.load_patch;
   const ParticleModel model(setup.outline, test.mesh_nodes, elastic_constants(test.material),
                             parameters.initiation_radius);
-  const std::vector<Load> loads = setup.loads(model.elastic.mesh());
+  const IntactModel& elastic = model.elastic;
+  const double patch = parameters.load_patch * common::equivalent_diameter(model.area);
 
   LabResult result;
   result.rock = parameters.rock;
-  result.mesh = model.elastic.mesh();
-  const double patch = parameters.load_patch * common::equivalent_diameter(model.area);
-  const std::vector<Stress> unit =
-      model.elastic.stresses(model.elastic.solve(model.elastic.nodal_forces(loads, patch)));
-  const std::vector<Stress> averaged = model.average(unit);
-  double smallest = kInfinity;
-  int critical = -1;
-  for (std::size_t e = 0; e < averaged.size(); ++e) {
-    const PrincipalStress p = principal(averaged[e]);
-    const double factor = parameters.rock.load_factor(p.s1, p.s3);
-    if (factor < smallest) {
-      smallest = factor;
-      critical = static_cast<int>(e);
-    }
-  }
-  result.first_failure_load = smallest * setup.unit_load;
-  result.breakage_load = kInfinity;
-  const double shown = critical < 0 ? 1 : smallest;
-  const auto at_first_failure = [shown](const std::vector<Stress>& stresses) {
-    std::vector<Stress> scaled;
-    for (const Stress& s : stresses) scaled.push_back({shown * s.xx, shown * s.yy, shown * s.xy});
-    return scaled;
+  result.mesh = elastic.mesh();
+  std::vector<Vec2> centers;
+  for (int e = 0; e < static_cast<int>(result.mesh.triangles.size()); ++e) centers.push_back(result.mesh.centroid(e));
+
+  const std::vector<Load> growing = setup.loads(elastic);
+  const std::vector<Load> held = setup.held ? setup.held(elastic) : std::vector<Load>();
+  const auto field = [&](const std::vector<Load>& loads) {
+    return elastic.stresses(elastic.solve(elastic.nodal_forces(loads, patch)));
   };
-  result.element_stress = at_first_failure(unit);
-  result.averaged_stress = at_first_failure(averaged);
-  if (critical >= 0) {
-    result.first_failure_point = result.mesh.centroid(critical);
+  const std::vector<Stress> unit = field(growing), constant = held.empty() ? std::vector<Stress>() : field(held);
+  const std::vector<Stress> average = model.average(unit);
+  const std::vector<Stress> constant_average = held.empty() ? std::vector<Stress>() : model.average(constant);
+  const FirstFailure first = first_failure(parameters.rock, constant_average, average, centers);
+  const auto load_at = [&](double factor) { return setup.held_load + factor * setup.unit_load; };
+  const double shown = first.element < 0 ? 1 : first.factor;
+  result.first_failure_load = load_at(first.factor);
+  result.breakage_load = kInfinity;
+  result.loads = total(held, shown, growing);
+  result.element_stress = superposed(constant, shown, unit);
+  result.averaged_stress = superposed(constant_average, shown, average);
+  if (first.element >= 0) {
+    result.first_failure_point = centers[first.element];
+    const PrincipalStress p = principal(result.averaged_stress[first.element]);
+    result.first_failure_mode = parameters.rock.mode(p.s1, p.s3);
     std::vector<Crack> cracks;
-    const double first = smallest * (1 + kJustAbove);
-    for (double factor = first; factor <= kLargestLoadRatio * first; factor *= 1 + kLoadStep) {
-      parameters.load_factor = factor;
-      result.breakage = analyse(model, loads, cracks, parameters);
+    const double least = first.factor * (1 + kJustAbove);
+    for (double factor = least; factor <= test.loading.largest * least; factor *= 1 + test.loading.step) {
+      result.breakage = analyse(model, total(held, factor, growing), cracks, parameters);
       result.growth_steps += result.breakage.growth_steps;
-      if (result.breakage.status == common::ParticleStatus::broken) result.breakage_load = factor * setup.unit_load;
+      if (result.breakage.status == common::ParticleStatus::broken) result.breakage_load = load_at(factor);
       if (result.breakage.status == common::ParticleStatus::broken ||
           result.breakage.status == common::ParticleStatus::refused)
         break;
@@ -85,17 +127,21 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
 }
 
 std::string run_lab_test(const common::LabTest& test, const std::filesystem::path& directory) {
-  const LabSetup setup = setup_of(test);
+  const LabSetup setup = lab_setup(test);
   const LabResult result = run(setup, test);
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw common::io_failure(fmt::format("{}: {}", directory.string(), failed.message()));
-  write_lab_summary(directory / "summary.json", setup, result, test);
+  write_text(directory / "case.yaml", to_yaml(test));
   write_lab_result(directory / "result.h5", setup, result);
-  write_lab_figure(directory / "specimen.svg", setup, result);
-  return fmt::format("{}: first failure at {:.4f} of theory, breakage at {:.4f}; {}", setup.test,
-                     result.first_failure_load / setup.theory_load, result.breakage_load / setup.theory_load,
-                     (directory / "summary.json").string());
+  write_text(directory / "specimen.svg", lab_figure(setup, result, test));
+  write_text(directory / "summary.json", lab_summary(setup, result, test));
+  const auto share = [&](double load) {
+    return setup.theory_load ? fmt::format("{:.4f} of theory", load / *setup.theory_load)
+                             : fmt::format("{:.4g} kN/m", load / 1e3);
+  };
+  return fmt::format("{}: first failure at {}, breakage at {}; {}", setup.test, share(result.first_failure_load),
+                     share(result.breakage_load), (directory / "summary.json").string());
 }
 
 }  // namespace xfem

@@ -31,6 +31,14 @@ void write_lab_result(const std::filesystem::path& file, const LabSetup& setup, 
   put("stress/averaged", rows(result.averaged_stress), "Pa",
       "averaged stress (xx, yy, xy) that the criterion saw at first failure, compression positive");
 
+  std::vector<Vec2> load_points, forces;
+  for (const Load& load : result.loads) {
+    load_points.push_back(load.point);
+    forces.push_back(load.force);
+  }
+  put("loads/point", load_points, "m", "where forces act (x, y)");
+  put("loads/force", forces, "N", "forces on the specimen (x, y) at first failure, per metre of thickness");
+
   std::vector<std::int64_t> point_offset{0};
   std::vector<Vec2> points;
   for (const Crack& crack : result.breakage.cracks) {

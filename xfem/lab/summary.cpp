@@ -93,31 +93,40 @@ std::optional<double> fracture_angle_degrees(const BreakageResult& result) {
   return angle_degrees((*result.path)[1] - (*result.path)[0]);
 }
 
-void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup, const LabResult& result,
-                       const common::LabTest& test) {
+std::string lab_summary(const LabSetup& setup, const LabResult& result, const common::LabTest& test) {
   Json summary;
   summary["schema"] = "lab/1";
   summary["test"] = setup.test;
-  if (setup.test == "brazilian")
-    summary["specimen"] = {{"diameter", test.specimen.diameter}, {"sides", setup.outline.size()}};
-  else
-    summary["specimen"] = {{"width", test.specimen.width}, {"height", test.specimen.height}};
+  summary["config_hash"] = common::config_hash(test);
+  summary["rock"] = {{"name", test.material.name},
+                     {"sigma_ci", test.material.sigma_ci},
+                     {"m_i", test.material.m_i},
+                     {"young_modulus", test.material.young_modulus},
+                     {"poisson_ratio", test.material.poisson_ratio}};
+  for (const auto& [name, value] : setup.dimensions) summary["specimen"][name] = value;
   summary["specimen"]["area"] = common::area(setup.outline);
   summary["mesh"] = {{"nodes", result.mesh.nodes.size()}, {"elements", result.mesh.triangles.size()}};
-  summary["analytical"]["breakage_load"] = setup.theory_load;
-  for (const auto& [name, value] : setup.theory) summary["analytical"][name] = value;
+  const auto ratio = [&](double load) { return setup.theory_load ? number(load / *setup.theory_load) : Json(nullptr); };
+  summary["analytical"] = nullptr;
+  if (setup.theory_load) {
+    summary["analytical"] = {{"breakage_load", *setup.theory_load}};
+    for (const auto& [name, value] : setup.theory) summary["analytical"][name] = value;
+  }
+  summary["reference"] = nullptr;
+  if (setup.estimate) summary["reference"] = {{"breakage_load", *setup.estimate}, {"estimate", setup.estimate_source}};
+  summary["held_load"] = setup.held_load;
   summary["first_failure_load"] = number(result.first_failure_load);
   summary["breakage_load"] = number(result.breakage_load);
-  summary["ratio"] = number(result.breakage_load / setup.theory_load);
-  summary["ratio_first_failure"] = number(result.first_failure_load / setup.theory_load);
-  if (summary["analytical"].contains("tensile_load")) {
+  summary["ratio"] = ratio(result.breakage_load);
+  summary["ratio_first_failure"] = ratio(result.first_failure_load);
+  if (setup.theory_load && summary["analytical"].contains("tensile_load")) {
     const double tensile = summary["analytical"]["tensile_load"];
     summary["ratio_tensile"] = {{"first_failure", number(result.first_failure_load / tensile)},
                                 {"breakage", number(result.breakage_load / tensile)}};
   }
-  summary["load_step"] = kLoadStep;
+  summary["load_step"] = test.loading.step;
   summary["first_failure_point"] = point(result.first_failure_point);
-  summary["failure_mode"] = name_of(result.breakage.failure_mode);
+  summary["failure_mode"] = name_of(result.first_failure_mode);
   summary["crack_path"] = crack_path(result.breakage.cracks);
   summary["breakage_line"] = Json::array();
   if (result.breakage.path)
@@ -132,7 +141,10 @@ void write_lab_summary(const std::filesystem::path& file, const LabSetup& setup,
   summary["status"] = name_of(result.breakage.status);
   if (!result.breakage.reason.empty()) summary["reason"] = result.breakage.reason;
   summary["seconds"] = result.seconds;
-  const std::string text = summary.dump(2) + "\n";
+  return summary.dump(2) + "\n";
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
   common::write_atomically(file, std::as_bytes(std::span(text)), {});
 }
 

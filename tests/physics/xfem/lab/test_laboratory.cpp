@@ -6,24 +6,15 @@
 
 #include "../../../unit/xfem/sample_frame.hpp"
 #include "common/error.hpp"
-#include "xfem/lab/laboratory.hpp"
+#include "laboratory.hpp"
 #include "xfem/lab/report.hpp"
 
-namespace {
-
-common::LabTest laboratory(common::LabTestKind kind, int nodes) {
-  common::LabTest test;
-  test.test = kind;
-  test.mesh_nodes = nodes;
-  test.breakage.minimum_area = 0;
-  return test;
-}
-
-}  // namespace
+using common::LabTestKind;
+using laboratory::test_of;
 
 TEST_CASE("a block between smooth platens first fails at its uniaxial strength") {
   for (int nodes : {75, 300}) {
-    const common::LabTest test = laboratory(common::LabTestKind::uniaxial, nodes);
+    const common::LabTest test = test_of(LabTestKind::uniaxial, nodes);
     const xfem::LabSetup setup = xfem::uniaxial_test(test);
     const xfem::LabResult result = xfem::run(setup, test);
     CHECK(std::abs(result.first_failure_load / (150e6 * test.specimen.width) - 1) < 1e-9);
@@ -37,14 +28,14 @@ TEST_CASE("a block between smooth platens first fails at its uniaxial strength")
 
 TEST_CASE("a disc under two forces first fails near Hondros' stress at its centre") {
   for (const auto& [nodes, ratio] : {std::pair{75, 1.02}, {150, 1.05}, {300, 1.05}}) {
-    const common::LabTest test = laboratory(common::LabTestKind::brazilian, nodes);
+    const common::LabTest test = test_of(LabTestKind::brazilian, nodes);
     const xfem::LabSetup setup = xfem::brazilian_test(test);
     const double tensile = std::numbers::pi * 0.5 * 6e6 / 2;
-    CHECK(setup.theory_load == Approx(tensile * 50 / (25 + std::sqrt(25.0 * 25 + 64))).epsilon(1e-14));
+    CHECK(*setup.theory_load == Approx(tensile * 50 / (25 + std::sqrt(25.0 * 25 + 64))).epsilon(1e-14));
     const xfem::LabResult result = xfem::run(setup, test);
-    INFO(nodes << " nodes: first failure " << result.first_failure_load / setup.theory_load << ", breakage "
-               << result.breakage_load / setup.theory_load);
-    CHECK(std::abs(result.first_failure_load / setup.theory_load - ratio) < 0.02);
+    INFO(nodes << " nodes: first failure " << result.first_failure_load / *setup.theory_load << ", breakage "
+               << result.breakage_load / *setup.theory_load);
+    CHECK(std::abs(result.first_failure_load / *setup.theory_load - ratio) < 0.02);
     CHECK(result.breakage.failure_mode == xfem::FailureMode::tension);
     CHECK(result.breakage.status == common::ParticleStatus::broken);
     CHECK(result.breakage_load >= result.first_failure_load);
@@ -54,32 +45,32 @@ TEST_CASE("a disc under two forces first fails near Hondros' stress at its centr
 
 TEST_CASE("a coarse disc breaks at first failure: its crack does not stop short of the load points") {
   for (int nodes : {60, 70, 78, 90}) {
-    const common::LabTest test = laboratory(common::LabTestKind::brazilian, nodes);
-    const xfem::LabResult result = xfem::run(xfem::brazilian_test(test), test);
+    const common::LabTest test = test_of(LabTestKind::brazilian, nodes);
+    const xfem::LabResult result = laboratory::run(test);
     INFO(nodes << " nodes");
     CHECK(result.breakage_load < 1.02 * result.first_failure_load);
   }
 }
 
 TEST_CASE("strength scales with the rock's and not with its stiffness") {
-  common::LabTest test = laboratory(common::LabTestKind::brazilian, 150);
-  const double load = xfem::run(xfem::brazilian_test(test), test).first_failure_load;
+  common::LabTest test = test_of(LabTestKind::brazilian, 150);
+  const double load = laboratory::run(test).first_failure_load;
   test.material.sigma_ci *= 2;
   test.material.young_modulus *= 3;
-  CHECK(xfem::run(xfem::brazilian_test(test), test).first_failure_load == Approx(2 * load).epsilon(1e-12));
+  CHECK(laboratory::run(test).first_failure_load == Approx(2 * load).epsilon(1e-12));
 }
 
 TEST_CASE("the literal reading has point loads, whatever patch is asked for") {
-  common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  common::LabTest test = test_of(LabTestKind::brazilian, 75);
   test.breakage.literal = true;
-  const double point = xfem::run(xfem::brazilian_test(test), test).first_failure_load;
+  const double point = laboratory::run(test).first_failure_load;
   test.loading.patch = 0.1;
-  CHECK(xfem::run(xfem::brazilian_test(test), test).first_failure_load == point);
+  CHECK(laboratory::run(test).first_failure_load == point);
 }
 
 TEST_CASE("a laboratory test leaves a summary with the agreed keys, a file and a figure") {
   const sample::Directory directory("lab");
-  const common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  const common::LabTest test = test_of(LabTestKind::brazilian, 75);
   xfem::run_lab_test(test, directory / "out");
   std::ifstream stream(directory / "out" / "summary.json");
   const auto summary = nlohmann::json::parse(stream);
@@ -98,10 +89,21 @@ TEST_CASE("a laboratory test leaves a summary with the agreed keys, a file and a
 }
 
 TEST_CASE("laboratory tests that make no sense are refused") {
-  common::LabTest test = laboratory(common::LabTestKind::brazilian, 75);
+  common::LabTest test = test_of(LabTestKind::brazilian, 75);
   test.specimen.sides = 31;
   CHECK_THROWS_WITH(xfem::brazilian_test(test), Catch::Contains("found 31, expected an even number"));
-  test = laboratory(common::LabTestKind::uniaxial, 75);
-  test.loading.platen_friction = 0.3;
-  CHECK_THROWS_WITH(xfem::uniaxial_test(test), Catch::Contains("smooth platens"));
+  test = test_of(LabTestKind::uniaxial, 75);
+  test.loading.confining_stress = 1e6;
+  CHECK_THROWS_WITH(xfem::uniaxial_test(test),
+                    Catch::Contains("loading.confining_stress: found a value, expected none"));
+  test = test_of(LabTestKind::bending, 75);
+  test.specimen.width = 0.5;
+  test.specimen.height = 0.1;
+  test.specimen.span = 0.15;
+  CHECK_THROWS_WITH(xfem::bending_test(test), Catch::Contains("specimen.span: found 0.15"));
+  test = test_of(LabTestKind::multi_contact, 75);
+  test.specimen.outline = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  test.loading.points = {{0.5, 0}, {0.5, 1}};
+  test.loading.forces = {{0, 1}, {0, -0.9}};
+  CHECK_THROWS_WITH(xfem::multi_contact_test(test), Catch::Contains("out of balance"));
 }

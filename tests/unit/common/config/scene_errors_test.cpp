@@ -43,8 +43,8 @@ TEST_CASE("An unknown key is reported with the nearest valid one, or with all of
        "s.yaml:1:21: unknown key \"coners_min\" in assembly.shapes; did you mean \"corners_min\"?"},
       {"zork: 1\n", "s.yaml:1:1: unknown key \"zork\"; expected one of " + kSections},
       {"material:\n  zork: 1\n",
-       "s.yaml:2:3: unknown key \"zork\" in material; expected one of density, sigma_ci, m_i, young_modulus, "
-       "poisson_ratio, plane_stress"},
+       "s.yaml:2:3: unknown key \"zork\" in material; expected one of rock, name, source, density, sigma_ci, m_i, "
+       "young_modulus, poisson_ratio, plane_stress"},
       {"friction: 0.5\n", "s.yaml:1:1: unknown key \"friction\"; did you mean \"contact.friction\"?"},
       {"contact.friction: 0.5\n",
        "s.yaml:1:1: unknown key \"contact.friction\"; expected it in its section, as in contact: {...}"},

@@ -28,6 +28,9 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
   std::map<std::string, Change> result;
   const std::map<std::string, std::string> simple{
       {"seed", "2"},
+      {"material.rock", folder.write("rock.yaml", "name: of a file\n").string()},
+      {"material.name", "granite"},
+      {"material.source", "a book"},
       {"material.density", "2600"},
       {"material.sigma_ci", "151e6"},
       {"material.m_i", "24"},
