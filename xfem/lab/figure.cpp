@@ -13,8 +13,9 @@ namespace xfem {
 
 namespace {
 
-constexpr double kPanel = 430, kMargin = 44, kHead = 92, kLegend = 96;
+constexpr double kPanel = 430, kMargin = 44, kHead = 104, kLegend = 96;
 constexpr int kColours = 64;
+constexpr const char* kSoft = "fill=\"#52606d\"";
 /// Above this the mesh lines would cover the field.
 constexpr std::size_t kMostDrawnElements = 4000;
 
@@ -152,14 +153,14 @@ std::string legend(double x, double top) {
   return text;
 }
 
-std::string headline(const LabSetup& setup, const LabResult& result, const common::LabTest& test) {
+std::string headline(const LabSetup& setup, const LabResult& result, const common::LabTest& test, double height) {
   std::string name = setup.test;
   std::replace(name.begin(), name.end(), '_', ' ');
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  std::string title = fmt::format("{} test", name);
-  if (!test.material.name.empty()) title += ", " + test.material.name;
-  title += fmt::format(": σci = {:.4g} MPa, m = {:.3g}, {} nodes", test.material.sigma_ci / 1e6, test.material.m_i,
-                       result.mesh.nodes.size());
+  const std::string title = name + " test" + (test.material.name.empty() ? "" : ": " + test.material.name);
+  const std::string model =
+      fmt::format("σci = {:.4g} MPa, m = {:.3g} · {} nodes, h = {:.3g} of the height", test.material.sigma_ci / 1e6,
+                  test.material.m_i, result.mesh.nodes.size(), result.mesh.size / height);
   const auto load = [&](double value) {
     if (!std::isfinite(value)) return std::string("none");
     std::string text = fmt::format("{:.4g} kN/m", value / 1e3);
@@ -173,11 +174,11 @@ std::string headline(const LabSetup& setup, const LabResult& result, const commo
   std::string held;
   if (setup.held_load > 0)
     held = fmt::format(" · confining stress {:.4g} MPa held", test.loading.confining_stress / 1e6);
-  return label(kMargin, 30, "font-size=\"16\" font-weight=\"600\"", title) +
-         label(kMargin, 52, "",
-               fmt::format("first failure at {} ({}) · breakage at {}", load(result.first_failure_load), mode,
+  return label(kMargin, 30, "font-size=\"16\" font-weight=\"600\"", title) + label(kMargin, 50, kSoft, model) +
+         label(kMargin, 70, "",
+               fmt::format("first failure {} ({}) · breakage {}", load(result.first_failure_load), mode,
                            load(result.breakage_load))) +
-         label(kMargin, 72, "fill=\"#52606d\"",
+         label(kMargin, 90, kSoft,
                (angle ? fmt::format("breakage line {:.1f}° from the load axis", *angle)
                       : std::string("not broken at the largest load")) +
                    held);
@@ -222,18 +223,17 @@ std::string lab_figure(const LabSetup& setup, const LabResult& result, const com
     width = right.left + right.width() + kMargin + kLegend;
     height = canvas.bottom() + kMargin;
   }
-  width = std::max(width, 690.0);
-  const std::string soft = "fill=\"#52606d\"";
+  width = std::max(width, 740.0);
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\" fill=\"#1f2933\">\n"
              "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"white\"/>\n",
              width, height) +
-         headline(setup, result, test) + field(canvas, result) +
+         headline(setup, result, test, extent.y()) + field(canvas, result) +
          path(canvas.closed(setup.outline), "fill=\"none\" stroke=\"#1f2933\" stroke-width=\"1.2\"") +
          cracks(canvas, result.breakage.cracks) + arrows(canvas, setup, result.loads) + second +
          legend(width - kLegend, kHead + kMargin + 14) +
-         label(kMargin, height - 10, soft + " font-size=\"11\"",
+         label(kMargin, height - 10, std::string(kSoft) + " font-size=\"11\"",
                "colour: 1 / λ of the averaged stress at first failure (1: fails); orange: cracks; arrows: load") +
          "</svg>\n";
 }
