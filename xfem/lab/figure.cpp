@@ -52,8 +52,11 @@ struct Canvas {
   }
   std::string closed(PolygonView vertices) const {
     std::string text;
-    for (const Vec2& v : vertices) text += (text.empty() ? "M" : "L") + at(v);
-    return text + "Z";
+    for (const Vec2& v : vertices) {
+      text += text.empty() ? 'M' : 'L';
+      text += at(v);
+    }
+    return text + 'Z';
   }
   double width() const { return scale * (high.x() - low.x()); }
   double bottom() const { return kHead + kMargin + scale * (high.y() - low.y()); }
@@ -115,8 +118,10 @@ std::string arrows(const Canvas& canvas, const LabSetup& setup, const std::vecto
 std::string cracks(const Canvas& canvas, const std::vector<Crack>& all) {
   std::string lines;
   for (const Crack& crack : all)
-    for (std::size_t i = 0; i < crack.points.size(); ++i)
-      lines += (i == 0 ? "M" : "L") + canvas.at(crack.points[i].position);
+    for (std::size_t i = 0; i < crack.points.size(); ++i) {
+      lines += i == 0 ? 'M' : 'L';
+      lines += canvas.at(crack.points[i].position);
+    }
   if (lines.empty()) return "";
   return path(lines, "fill=\"none\" stroke=\"white\" stroke-width=\"5\" stroke-linejoin=\"round\"") +
          path(lines, "fill=\"none\" stroke=\"#d55e00\" stroke-width=\"2.6\" stroke-linejoin=\"round\"");
