@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace xfem {
 
@@ -14,6 +15,7 @@ constexpr double kGrading = 0.8;      // growth of the edge length with the dist
 constexpr double kFinest = 1.0 / 8;   // smallest wanted edge length, in h
 constexpr double kClearance = 0.62;   // of lattice points from the outline, in local edge lengths
 constexpr double kSeparation = 0.75;  // of lattice points of different levels, in local edge lengths
+constexpr int kLevels = 4;            // of lattices, each of half the spacing
 constexpr int kSamples = 32;          // of the size field along an edge
 
 /// Splits the edge at equal steps of the integral of 1 / size; positions in [0, 1), the first 0.
@@ -41,13 +43,39 @@ std::vector<double> subdivide(const Vec2& from, const Vec2& to, const SizeField&
   return result;
 }
 
-double outline_distance(const Vec2& point, PolygonView outline) {
-  double result = segment_distance(point, outline.back(), outline.front());
-  for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
-    result = std::min(result, segment_distance(point, outline[i], outline[i + 1]));
+/// The lines that bound a convex outline.
+class HalfPlanes {
+ public:
+  explicit HalfPlanes(PolygonView outline) {
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i];
+      const Vec2 inward = common::perpendicular(edge) / edge.norm();
+      planes_.push_back({inward, inward.dot(outline[i])});
+    }
   }
-  return result;
-}
+  /// Distance of an inner point from the outline; negative outside.
+  double depth(const Vec2& point) const {
+    double result = planes_[0].inward.dot(point) - planes_[0].offset;
+    for (const Plane& plane : planes_) result = std::min(result, plane.inward.dot(point) - plane.offset);
+    return result;
+  }
+
+ private:
+  struct Plane {
+    Vec2 inward;
+    double offset;
+  };
+  std::vector<Plane> planes_;
+};
+
+/// The smallest box around some points, in any orthonormal axes.
+struct Box {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vec2& point, double reach) {
+    low = low.cwiseMin(point - Vec2::Constant(reach));
+    high = high.cwiseMax(point + Vec2::Constant(reach));
+  }
+};
 
 Vec2 longest_edge_direction(PolygonView outline) {
   Vec2 result(1, 0);
@@ -97,28 +125,43 @@ Placement place_points(PolygonView outline, const SizeField& size, const Vec2& s
       result.on_edge.emplace_back(static_cast<int>(i), t);
     }
   }
-  double radius = 0;
-  for (const Vec2& vertex : outline) radius = std::max(radius, vertex.norm());
 
   // Lattices of spacing h, h/2, h/4, h/8, the finest first; each serves where the wanted edge length is nearest to it.
   const Vec2 along = longest_edge_direction(outline);
   const Vec2 across = common::perpendicular(along);
+  const auto in_axes = [&](const Vec2& x) { return Vec2(x.dot(along), x.dot(across)); };
+  const HalfPlanes inside(outline);
   const double row_height = std::sqrt(0.75);
   const std::size_t boundary = result.points.size();
-  for (int level = size.uniform() ? 0 : 3; level >= 0; --level) {
+  for (int level = size.uniform() ? 0 : kLevels - 1; level >= 0; --level) {
     const double spacing = size.h() / (1 << level);
-    const double low = level == 3 ? 0.0 : spacing * std::sqrt(0.5);
+    const double low = level == kLevels - 1 ? 0.0 : spacing * std::sqrt(0.5);
     const double high = level == 0 ? 2 * size.h() : spacing * std::sqrt(2.0);
-    const int rows = static_cast<int>(radius / (row_height * spacing)) + 2;
-    const int columns = static_cast<int>(radius / spacing) + 2;
-    for (int row = -rows; row <= rows; ++row) {
-      for (int column = -columns; column <= columns; ++column) {
-        const double x = (column + shift.x() + ((row & 1) != 0 ? 0.5 : 0.0)) * spacing;
+    Box box;
+    if (level == 0) {
+      for (const Vec2& vertex : outline) box.add(in_axes(vertex), 0);
+    } else {
+      for (const SizeField::Edge& edge : size.short_edges()) {
+        const double reach = (high - edge.length) / kGrading;
+        if (reach <= 0) continue;
+        box.add(in_axes(edge.from), reach);
+        box.add(in_axes(edge.to), reach);
+      }
+      if (box.low.x() > box.high.x()) continue;
+    }
+    const auto cells = [](double x) { return static_cast<int>(std::floor(x)); };
+    const int last_row = cells(box.high.y() / (row_height * spacing) - shift.y()) + 1;
+    for (int row = cells(box.low.y() / (row_height * spacing) - shift.y()); row <= last_row; ++row) {
+      const double offset = shift.x() + ((row & 1) != 0 ? 0.5 : 0.0);
+      const int last_column = cells(box.high.x() / spacing - offset) + 1;
+      for (int column = cells(box.low.x() / spacing - offset); column <= last_column; ++column) {
+        const double x = (column + offset) * spacing;
         const double y = (row + shift.y()) * row_height * spacing;
         const Vec2 point = x * along + y * across;
+        const double depth = inside.depth(point);
+        if (depth < kClearance * kFinest * size.h()) continue;
         const double wanted = size(point);
-        if (wanted < low || wanted >= high || !common::contains(outline, point)) continue;
-        if (outline_distance(point, outline) < kClearance * wanted) continue;
+        if (wanted < low || wanted >= high || depth < kClearance * wanted) continue;
         bool free = true;
         if (!size.uniform()) {
           for (std::size_t k = boundary; k < result.points.size() && free; ++k) {

@@ -17,11 +17,14 @@ class SizeField {
   bool uniform() const { return short_edges_.empty(); }
   double h() const { return h_; }
 
- private:
   struct Edge {
     common::Vec2 from, to;
     double length;
   };
+  /// Those shorter than 3/4 h.
+  const std::vector<Edge>& short_edges() const { return short_edges_; }
+
+ private:
   double h_;
   std::vector<Edge> short_edges_;
 };
