@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "xfem/elasticity/factor.hpp"
 #include "xfem/elasticity/loads.hpp"
 #include "xfem/elasticity/stiffness.hpp"
 
@@ -148,21 +149,6 @@ BodyForce IntactModel::inertia_relief(std::span<const Load> loads, double patch)
                               self.moments);
 }
 
-Eigen::MatrixXd IntactModel::unit_boundary_forces() const {
-  const Implementation& self = *implementation_;
-  const Eigen::Index count = static_cast<Eigen::Index>(self.loop.size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(dofs(), 2 * count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    for (int c = 0; c < 2; ++c) {
-      const Vec2 force = Vec2::Unit(c);
-      const std::array<Vec2, 1> point{self.loop_points[k]};
-      result(2 * self.loop[k] + c, 2 * k + c) = 1;
-      self.add(balancing_body_force(point, {&force, 1}, self.moments), result.col(2 * k + c));
-    }
-  }
-  return result;
-}
-
 double IntactModel::unbalance(std::span<const Load> loads) {
   Vec2 resultant = Vec2::Zero();
   double sum = 0;
@@ -179,6 +165,47 @@ Eigen::VectorXd IntactModel::solve(const Eigen::VectorXd& forces) const {
 
 Eigen::MatrixXd IntactModel::solve(const Eigen::MatrixXd& forces) const {
   return implementation_->factor.solve(forces);
+}
+
+void IntactModel::unit_stresses(int first, std::vector<double>& stress, std::vector<double>& work) const {
+  using Lanes = Eigen::Array<double, kSideBySide, 1>;
+  const auto lanes = [](std::vector<double>& values, std::size_t k) {
+    return Eigen::Map<Lanes>(values.data() + k * kSideBySide);
+  };
+  const Implementation& self = *implementation_;
+  const int cases = 2 * static_cast<int>(self.loop.size());
+  work.assign(static_cast<std::size_t>(dofs()) * kSideBySide, 0.0);
+  std::array<Lanes, 2> linear{Lanes::Zero(), Lanes::Zero()};
+  Lanes angular = Lanes::Zero();
+  for (int k = 0; k < kSideBySide && first + k < cases; ++k) {
+    const int c = (first + k) % 2;
+    const Vec2 force = Vec2::Unit(c);
+    const std::size_t at = static_cast<std::size_t>(first + k) / 2;
+    const BodyForce body = balancing_body_force({&self.loop_points[at], 1}, {&force, 1}, self.moments);
+    linear[0][k] = body.linear.x();
+    linear[1][k] = body.linear.y();
+    angular[k] = body.angular;
+    lanes(work, 2 * static_cast<std::size_t>(self.loop[at]) + c)[k] = 1;
+  }
+  for (int i = 0; i < dofs(); ++i) lanes(work, i) -= linear[i % 2] * self.rigid(i, i % 2) + angular * self.rigid(i, 2);
+  self.factor.solve_side_by_side<kSideBySide>(work.data());
+
+  const Eigen::Matrix3d& d = self.elasticity;
+  stress.resize(self.mesh.triangles.size() * (3 * kSideBySide));
+  for (std::size_t t = 0; t < self.mesh.triangles.size(); ++t) {
+    Lanes exx = Lanes::Zero(), eyy = Lanes::Zero(), gxy = Lanes::Zero();
+    for (int n = 0; n < 3; ++n) {
+      const Vec2& g = self.gradients[t].gradient[n];
+      const std::size_t node = static_cast<std::size_t>(self.mesh.triangles[t][n]);
+      const Lanes u = lanes(work, 2 * node), v = lanes(work, 2 * node + 1);
+      exx += g.x() * u;
+      eyy += g.y() * v;
+      gxy += g.y() * u + g.x() * v;
+    }
+    lanes(stress, 3 * t) = -(d(0, 0) * exx + d(0, 1) * eyy);
+    lanes(stress, 3 * t + 1) = -(d(1, 0) * exx + d(1, 1) * eyy);
+    lanes(stress, 3 * t + 2) = -d(2, 2) * gxy;
+  }
 }
 
 std::vector<Stress> IntactModel::stresses(const Eigen::VectorXd& displacement) const {

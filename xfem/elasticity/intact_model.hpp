@@ -63,10 +63,6 @@ class IntactModel {
   const std::vector<int>& boundary() const;
   const std::vector<Vec2>& boundary_points() const;
   const BoundaryLoop& boundary_loop() const;
-  /// Nodal forces (2 n x 2 B), in balance: column 2 k + c is a unit force on boundary node k along axis c with its
-  /// inertia relief.
-  Eigen::MatrixXd unit_boundary_forces() const;
-
   /// Nodal forces (2 n) [N] of the loads as consistent edge loads at the nearest point of the boundary (`patch` > 0:
   /// spread over that length [m] along the boundary, see loads.hpp), plus the body force of the rigid acceleration that
   /// balances them (inertia relief): their sum and moment vanish. The moment that a load loses by being moved to the
@@ -82,6 +78,13 @@ class IntactModel {
   /// The same for many right-hand sides at once (2 n x k), each column bit for bit as if alone.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& forces) const;
 
+  /// Element stresses under unit forces on the boundary with their inertia relief, kSideBySide cases at a time: case
+  /// 2 k + c is a force along axis c on boundary node k. Cases first, first + 1, ... stand side by side in
+  /// stress[(3 e + component) * kSideBySide + case - first], e x (xx, yy, xy), compression positive; beyond the last
+  /// case zeros. `work` is for the caller to keep.
+  static constexpr int kSideBySide = 8;
+  void unit_stresses(int first, std::vector<double>& stress, std::vector<double>& work) const;
+
   /// Element stresses, compression positive [Pa].
   std::vector<Stress> stresses(const Eigen::VectorXd& displacement) const;
 
@@ -96,6 +99,18 @@ class StressAverage {
  public:
   StressAverage(const Mesh& mesh, double radius);
   std::vector<Stress> operator()(std::span<const Stress> element_stress) const;
+  /// The same of `Values` numbers per element, e x Values.
+  template <int Values>
+  void average(const double* of_elements, double* result) const {
+    for (std::size_t t = 0; t + 1 < offset_.size(); ++t) {
+      using Row = Eigen::Array<double, Values, 1>;
+      Row sum = Row::Zero();
+      for (int k = offset_[t]; k < offset_[t + 1]; ++k) {
+        sum += weight_[k] * Eigen::Map<const Row>(of_elements + static_cast<std::size_t>(element_[k]) * Values);
+      }
+      Eigen::Map<Row>(result + t * Values) = sum;
+    }
+  }
 
  private:
   std::vector<int> offset_, element_;

@@ -8,25 +8,41 @@ namespace xfem {
 
 StressAverage::StressAverage(const Mesh& mesh, double radius) {
   const int elements = static_cast<int>(mesh.triangles.size());
-  std::vector<Vec2> centroid(elements);
-  for (int t = 0; t < elements; ++t) centroid[t] = mesh.centroid(t);
   // Sorted by x, so that only a strip of candidates is looked at.
-  std::vector<int> order(elements);
-  for (int t = 0; t < elements; ++t) order[t] = t;
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return centroid[a].x() != centroid[b].x() ? centroid[a].x() < centroid[b].x() : a < b;
-  });
+  struct Candidate {
+    double x, y;
+    int element;
+  };
+  std::vector<Candidate> candidates(elements);
+  for (int t = 0; t < elements; ++t) {
+    const Vec2 centroid = mesh.centroid(t);
+    candidates[t] = {centroid.x(), centroid.y(), t};
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.x != b.x ? a.x < b.x : a.element < b.element; });
+  // First by sorted element, while the strip moves on with it.
+  std::vector<int> first(elements), count(elements), found;
+  std::size_t left = 0;
+  for (const Candidate& own : candidates) {
+    while (candidates[left].x < own.x - radius) ++left;
+    first[own.element] = static_cast<int>(found.size());
+    for (std::size_t k = left; k < candidates.size() && candidates[k].x <= own.x + radius; ++k) {
+      const double dx = candidates[k].x - own.x, dy = candidates[k].y - own.y;
+      if (dx * dx + dy * dy <= radius * radius) found.push_back(candidates[k].element);
+    }
+    count[own.element] = static_cast<int>(found.size()) - first[own.element];
+  }
+  offset_.reserve(elements + 1);
+  element_.reserve(found.size());
+  weight_.reserve(found.size());
   offset_.push_back(0);
   for (int t = 0; t < elements; ++t) {
-    const std::size_t first = element_.size();
-    auto candidate = std::lower_bound(order.begin(), order.end(), centroid[t].x() - radius,
-                                      [&](int e, double x) { return centroid[e].x() < x; });
-    for (; candidate != order.end() && centroid[*candidate].x() <= centroid[t].x() + radius; ++candidate) {
-      if ((centroid[*candidate] - centroid[t]).squaredNorm() <= radius * radius) element_.push_back(*candidate);
-    }
     double sum = 0;
-    for (std::size_t k = first; k < element_.size(); ++k) sum += mesh.areas[element_[k]];
-    for (std::size_t k = first; k < element_.size(); ++k) weight_.push_back(mesh.areas[element_[k]] / sum);
+    for (int k = first[t]; k < first[t] + count[t]; ++k) sum += mesh.areas[found[k]];
+    for (int k = first[t]; k < first[t] + count[t]; ++k) {
+      element_.push_back(found[k]);
+      weight_.push_back(mesh.areas[found[k]] / sum);
+    }
     offset_.push_back(static_cast<int>(element_.size()));
   }
 }

@@ -46,21 +46,26 @@ Influence::Influence(const IntactModel& model, const StressAverage& average, Pol
       moments_(second_moments(outline)),
       nodes_(static_cast<int>(model.boundary().size())),
       blocks_((static_cast<int>(model.mesh().triangles.size()) + kLanes - 1) / kLanes) {
-  const Eigen::MatrixXd displacement = model.solve(model.unit_boundary_forces());
+  constexpr int kWidth = IntactModel::kSideBySide;
+  const std::size_t elements = model.mesh().triangles.size();
   const std::size_t stride = static_cast<std::size_t>(blocks_) * kBlock;
-  response_.assign(2 * nodes_ * stride, 0.0);
+  response_.assign(2 * nodes_ * stride, 0.0f);
   largest_.assign(2 * nodes_, 0.0);
-  for (int j = 0; j < 2 * nodes_; ++j) {
-    const std::vector<Stress> stress = average(model.stresses(displacement.col(j)));
-    float* column = response_.data() + j * stride;
-    for (std::size_t e = 0; e < stress.size(); ++e) {
-      float* target = column + (e / kLanes) * kBlock + e % kLanes;
-      const std::array<double, 3> components{stress[e].xx, stress[e].yy, stress[e].xy};
+  std::vector<double> stress, work, averaged(elements * (3 * kWidth));
+  for (int first = 0; first < 2 * nodes_; first += kWidth) {
+    model.unit_stresses(first, stress, work);
+    average.average<3 * kWidth>(stress.data(), averaged.data());
+    const int cases = std::min(kWidth, 2 * nodes_ - first);
+    std::array<double, kWidth> largest{};
+    for (std::size_t e = 0; e < elements; ++e) {
+      float* block = response_.data() + first * stride + (e / kLanes) * kBlock + e % kLanes;
       for (int c = 0; c < 3; ++c) {
-        target[c * kLanes] = static_cast<float>(components[c]);
-        largest_[j] = std::max(largest_[j], std::abs(components[c]));
+        const double* value = averaged.data() + (3 * e + c) * kWidth;
+        for (int k = 0; k < kWidth; ++k) largest[k] = std::max(largest[k], std::abs(value[k]));
+        for (int k = 0; k < cases; ++k) block[k * stride + c * kLanes] = static_cast<float>(value[k]);
       }
     }
+    std::copy_n(largest.begin(), cases, largest_.begin() + first);
   }
 }
 
