@@ -22,15 +22,21 @@ StressAverage::StressAverage(const Mesh& mesh, double radius) {
             [](const Candidate& a, const Candidate& b) { return a.x != b.x ? a.x < b.x : a.element < b.element; });
   // First by sorted element, while the strip moves on with it.
   std::vector<int> first(elements), count(elements), found;
-  std::size_t left = 0;
+  std::size_t left = 0, right = 0;
   for (const Candidate& own : candidates) {
     while (candidates[left].x < own.x - radius) ++left;
     first[own.element] = static_cast<int>(found.size());
-    for (std::size_t k = left; k < candidates.size() && candidates[k].x <= own.x + radius; ++k) {
+    while (right < candidates.size() && candidates[right].x <= own.x + radius) ++right;
+    // Every candidate is written, only the near ones stay: no branch to mispredict.
+    std::size_t end = found.size();
+    found.resize(end + right - left);
+    for (std::size_t k = left; k < right; ++k) {
       const double dx = candidates[k].x - own.x, dy = candidates[k].y - own.y;
-      if (dx * dx + dy * dy <= radius * radius) found.push_back(candidates[k].element);
+      found[end] = candidates[k].element;
+      end += dx * dx + dy * dy <= radius * radius;
     }
-    count[own.element] = static_cast<int>(found.size()) - first[own.element];
+    found.resize(end);
+    count[own.element] = static_cast<int>(end) - first[own.element];
   }
   offset_.reserve(elements + 1);
   element_.reserve(found.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "xfem/meshing/delaunay.hpp"
+#include "xfem/meshing/flips.hpp"
 
 namespace xfem {
 
@@ -75,7 +76,10 @@ Vec2 relaxed_position(const std::vector<Vec2>& points, const Triangles& triangle
 }  // namespace
 
 std::vector<std::array<int, 3>> smooth(std::vector<Vec2>& points, int boundary, const SizeField& size, int passes) {
-  Triangles triangles = delaunay(points, boundary);
+  const auto anew = [&] { return Triangulation(delaunay(points, boundary), points.size()); };
+  std::optional<Triangulation> made = Triangulation::of(points, boundary);
+  Triangulation triangulation = made ? std::move(*made) : anew();
+  Triangles& triangles = triangulation.triangles;
   for (int pass = 0; pass < passes; ++pass) {
     const Stars stars(triangles, points.size());
     bool moved = false;
@@ -107,9 +111,11 @@ std::vector<std::array<int, 3>> smooth(std::vector<Vec2>& points, int boundary, 
       }
     }
     if (!moved) break;
-    triangles = delaunay(points, boundary);
+    if (!triangulation.flip(points)) triangulation = anew();
   }
-  return triangles;
+  for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  return std::move(triangles);
 }
 
 }  // namespace xfem

@@ -47,6 +47,7 @@ Influence::Influence(const IntactModel& model, const StressAverage& average, Pol
       nodes_(static_cast<int>(model.boundary().size())),
       blocks_((static_cast<int>(model.mesh().triangles.size()) + kLanes - 1) / kLanes) {
   constexpr int kWidth = IntactModel::kSideBySide;
+  using Cases = Eigen::Array<double, kWidth, 1>;
   const std::size_t elements = model.mesh().triangles.size();
   const std::size_t stride = static_cast<std::size_t>(blocks_) * kBlock;
   response_.assign(2 * nodes_ * stride, 0.0f);
@@ -56,16 +57,17 @@ Influence::Influence(const IntactModel& model, const StressAverage& average, Pol
     model.unit_stresses(first, stress, work);
     average.average<3 * kWidth>(stress.data(), averaged.data());
     const int cases = std::min(kWidth, 2 * nodes_ - first);
-    std::array<double, kWidth> largest{};
+    Cases largest = Cases::Zero();
     for (std::size_t e = 0; e < elements; ++e) {
       float* block = response_.data() + first * stride + (e / kLanes) * kBlock + e % kLanes;
       for (int c = 0; c < 3; ++c) {
-        const double* value = averaged.data() + (3 * e + c) * kWidth;
-        for (int k = 0; k < kWidth; ++k) largest[k] = std::max(largest[k], std::abs(value[k]));
-        for (int k = 0; k < cases; ++k) block[k * stride + c * kLanes] = static_cast<float>(value[k]);
+        const Cases value = Eigen::Map<const Cases>(averaged.data() + (3 * e + c) * kWidth);
+        largest = largest.max(value.abs());
+        const Eigen::Array<float, kWidth, 1> rounded = value.cast<float>();
+        for (int k = 0; k < cases; ++k) block[k * stride + c * kLanes] = rounded[k];
       }
     }
-    std::copy_n(largest.begin(), cases, largest_.begin() + first);
+    std::copy_n(largest.data(), cases, largest_.begin() + first);
   }
 }
 

@@ -128,6 +128,22 @@ TEST_CASE("Extreme outlines and node counts give valid meshes", "[mesh]") {
   CHECK_THROWS_AS(make_mesh(Polygon{{0, 0}, {0, 1}, {1, 0}}, 75), common::Error);
 }
 
+TEST_CASE("Slivers are meshed with the angles that their corners allow and the nodes that were asked for", "[mesh]") {
+  for (const double ratio : {5.0, 20.0, 50.0}) {
+    for (const int nodes : {75, 150, 300, 1200}) {
+      INFO("ratio " << ratio << ", " << nodes << " nodes");
+      const Polygon bar{{0, 0}, {ratio, 0}, {ratio, 1}, {0, 1}};
+      const Mesh mesh = make_mesh(bar, nodes);
+      CHECK(smallest_angle_degrees(mesh) >= 30);
+      CHECK(std::abs(static_cast<double>(mesh.nodes.size()) / nodes - 1) <= 0.1);
+      const Polygon needle{{0, 0}, {ratio, 0.5}, {0, 1}};
+      const Mesh sharp = make_mesh(needle, nodes);
+      CHECK(smallest_angle_degrees(sharp) >= std::min(20.0, 0.95 * smallest_corner_degrees(needle)));
+      CHECK(std::abs(static_cast<double>(sharp.nodes.size()) / nodes - 1) <= 0.1);
+    }
+  }
+}
+
 TEST_CASE("A mesh does not depend on place and scale, nor on what was meshed before", "[mesh]") {
   common::Random random(9);
   int same_topology = 0;
