@@ -25,7 +25,7 @@ namespace {
 struct Arguments {
   std::string frame, config, previous, out, profile;
   common::Overrides overrides;
-  int threads = 0;
+  int threads = 0, repeats = 1;
 };
 
 void say(const std::string& text) {
@@ -55,7 +55,8 @@ void serve(const Arguments& arguments) {
 }
 
 void lab(const Arguments& arguments) {
-  say(xfem::run_lab_test(common::read_lab_test(arguments.config, arguments.overrides), arguments.out));
+  say(xfem::run_lab_test(common::read_lab_test(arguments.config, arguments.overrides), arguments.out,
+                         arguments.repeats));
 }
 
 void check(const Arguments& arguments) {
@@ -106,6 +107,8 @@ int run(int argc, char** argv) {
   CLI::App* testing = command("lab", "Run a single-specimen laboratory test", lab);
   testing->add_option("test", arguments.config, "Laboratory test (YAML)")->required();
   testing->add_option("--out", arguments.out, "Directory for summary.json, result.h5 and figures")->required();
+  testing->add_option("--repeat", arguments.repeats, "Runs; the times of summary.json are their medians")
+      ->check(CLI::Range(1, 1000));
   add_overrides(*testing, arguments);
 
   for (CLI::App* reading : {command("check", "Validate a scene or a laboratory test", check),

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 
 from .campaign_tables import mean, numbers_of, scatter
 
+NOTICEABLE = 0.9  # part of a cost; times on a busy machine differ by less for no reason
+
 
 @dataclass
 class Cell:
@@ -95,14 +97,15 @@ def mean_number(runs, key):
 
 
 def floors_of(ladders):
-    """Measure -> the largest error that rounding alone makes, from the ladders that change nothing else."""
+    """Measure -> the largest change of the error that rounding alone makes, from the ladders that change nothing else."""
     found = {}
     for ladder in ladders:
         if ladder.knob.rounding_only:
+            first = ladder.rungs[0].cells
             for rung in ladder.rungs:
                 for name, cell in rung.cells.items():
-                    if cell.error is not None:
-                        found[name] = max(found.get(name, 0.0), cell.error)
+                    if cell.error is not None and first[name].error is not None:
+                        found[name] = max(found.get(name, 0.0), abs(cell.error - first[name].error))
     return found
 
 
@@ -117,6 +120,8 @@ def is_whole(rung):
 
 
 def cheapest_good(ladder, floors):
-    """The rung of least cost whose errors are all good enough."""
+    """The rung of least cost whose errors are all good enough; the base, if no other is noticeably cheaper."""
     good = [rung for rung in ladder.rungs if is_whole(rung) and not beyond(rung, ladder, floors)]
-    return min(good, key=lambda rung: rung.cost, default=None)
+    cheapest = min(good, key=lambda rung: rung.cost, default=None)
+    base = ladder.base
+    return base if base in good and cheapest.cost > NOTICEABLE * base.cost else cheapest

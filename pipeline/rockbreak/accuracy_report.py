@@ -54,7 +54,7 @@ def csv_rows(study, ladders):
 
 def page_blocks(study, plan, ladders, floors, pictures, sample_seconds):
     kind = study.kind
-    total = sum(run.summary.get(kind.COSTS[0][2]) or 0 for run in plan.runs if run.summary)
+    total = sum(run.summary.get(kind.TOTAL) or 0 for run in plan.runs if run.summary)
     samples = sum(sample_seconds.values())
     blocks = [
         ("title", f"What accuracy costs in time: {study.file.stem}"),

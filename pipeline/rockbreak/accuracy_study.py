@@ -31,7 +31,8 @@ A study of several bases, all of one kind, names them; each knob climbs its ladd
       key: breakage.initiation_radius
       subjects: [particle]                      # all, if none is named
       rungs: [0.2, 0.1, 0.05]
-      reference: {mesh.nodes: 2400}             # each rung is compared with itself under these keys, not with the first
+      reference: {mesh.nodes: 2400}             # each rung is compared with itself under these keys, not with the first;
+                                                # or for some subjects alone: {particle: {mesh.nodes: 2400}}
 """
 import re
 from dataclasses import dataclass, field
@@ -105,7 +106,7 @@ def read_study(path, overrides=()):
         knob = section.mapping(name)
         knob.only("key", "rungs", "reference", "rounding_only", *(["subjects"] if several else []))
         for subject in subjects_of(knob, subjects):
-            subject.knobs.append(read_knob(knob, name, subject))
+            subject.knobs.append(read_knob(knob, name, subject, subjects))
     for subject in subjects:
         gather_runs(subject, file, overrides)
     return Study(path, subjects)
@@ -185,7 +186,7 @@ def subjects_of(knob, subjects):
     return [subject for subject in subjects if subject.name in names]
 
 
-def read_knob(knob, name, subject):
+def read_knob(knob, name, subject, subjects):
     rungs = knob.content.get("rungs")
     if isinstance(rungs, list):
         key = knob.text("key")
@@ -195,7 +196,7 @@ def read_knob(knob, name, subject):
         points = axis_values(knob, "rungs")
     else:
         knob.expected("rungs", rungs, "a list of values of `key`, or labels with the keys of each")
-    finer = knob.mapping("reference").scene_keys()
+    finer = reference_keys(knob, subject, subjects)
     if len(points) < 2:
         knob.fail("rungs", f"found {len(points)}, expected at least the reference and one more")
     variations, references = {}, {}
@@ -213,6 +214,15 @@ def read_knob(knob, name, subject):
                     keys_of(subject, dict(keys) | finer, specimen))
     return Knob(name, [label for label, _ in points], variations, references, knob.flag("rounding_only", False),
                 ", ".join(f"{key}: {value}" for key, value in finer.items()))
+
+
+def reference_keys(knob, subject, subjects):
+    """The keys that make the reference of a rung, for this subject."""
+    reference = knob.mapping("reference")
+    if set(reference.content) & {one.name for one in subjects}:
+        reference.only(*(one.name for one in subjects))
+        return reference.mapping(subject.name).scene_keys()
+    return reference.scene_keys()
 
 
 def gather_runs(subject, file, overrides):

@@ -41,6 +41,7 @@ COSTS = (  # heading, column of accuracy.csv, number of the summary, factor; err
     ("contact-steps", "contact_steps", "contact_steps", 1),
 )
 COST_AXIS, COST_UNIT = "CPU time [s]", "s"
+TOTAL = "cpu_seconds"
 COST_NOTE = ("CPU time: user seconds of the shear stage; the prepared sample is counted apart. Contact-steps do not "
              "depend on the machine.")
 THEORY_NOTE = ""

@@ -112,6 +112,12 @@ def test_the_cheapest_good_rung_stays_within_the_scatter():
     assert cheapest_good(scattered, {"m": 0.6, "m / n": 0.3}).label == "r2", "rounding alone does as much"
 
 
+def test_a_rung_that_costs_as_much_as_the_base_is_not_preferred():
+    values = [[1.0, 1.2], [1.0, 1.2], [1.0, 1.2]]
+    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.9)), {}).label == "r1"
+    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.7)), {}).label == "r2"
+
+
 def test_a_tolerance_decides_in_place_of_the_scatter():
     found = ladder([[1.0, 1.2], [1.05, 1.25], [1.08, 1.28]], tolerances={"m": 0.06, "m / n": 0.06})
     assert beyond(found.rungs[2], found, {}) == ["m"], "the scatter is 0.14"

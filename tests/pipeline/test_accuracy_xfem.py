@@ -2,6 +2,7 @@
 against numbers worked out by hand, specimens and references of a study file, and a small study with the real
 executable."""
 import csv
+import json
 import math
 import subprocess
 from types import SimpleNamespace
@@ -14,6 +15,7 @@ import yaml
 from conftest import REPOSITORY
 from rockbreak import laboratory_errors as errors
 from rockbreak.accuracy_study import read_study
+from rockbreak.child import executable
 from rockbreak.errors import RockbreakError
 from rockbreak.plan import make_plan
 
@@ -146,6 +148,10 @@ def test_a_knob_s_rungs_may_be_compared_with_themselves_on_a_finer_mesh(tmp_path
         {"breakage.initiation_radius": "0.1", "mesh.nodes": "400"},
         {"breakage.initiation_radius": "0.05", "mesh.nodes": "400"}]
     assert dict(radius.references["0.1", "coarser"].keys)["mesh.nodes"] == "320"
+    own = {"knobs": {"radius": {"key": "breakage.initiation_radius", "rungs": [0.1, 0.05],
+                                "reference": {"disc": {"mesh.nodes": 400}}}}}
+    named = read_study(study_file(tmp_path, **own)).subjects[0].knobs[0]
+    assert dict(named.references["0.1", "plain"].keys) == dict(radius.references["0.1", "plain"].keys)
     assert not radius.is_reference("0.1") and disc.knobs[0].is_reference("600")
 
 
@@ -177,6 +183,21 @@ def test_the_study_of_xfem_is_valid_and_the_base_is_a_rung_of_every_knob(tmp_pat
 
 
 # -- the whole
+
+def test_repetition_changes_the_times_alone(tmp_path):
+    summaries = []
+    for repeats in ("1", "3"):
+        command = [executable("xfem"), "lab", LAB / "brazilian.yaml", "--out", tmp_path / repeats, "--repeat", repeats,
+                   "--set", "mesh.nodes=75"]
+        assert subprocess.run(command, capture_output=True, check=False).returncode == 0
+        summaries.append(json.loads((tmp_path / repeats / "summary.json").read_text()))
+        cpu = summaries[-1].pop("cpu_seconds")
+        assert 0 < cpu["set_up"] and 0 < cpu["analysis"]
+        assert cpu["particle"] == pytest.approx(cpu["set_up"] + cpu["analysis"])
+        del summaries[-1]["seconds"]
+    assert summaries[0] == summaries[1] and summaries[0]["load_levels"] == 1, "the disc breaks where it first fails"
+    assert (tmp_path / "1" / "result.h5").read_bytes() == (tmp_path / "3" / "result.h5").read_bytes()
+
 
 def test_a_study_of_the_disc_finds_the_finer_mesh_better_and_dearer(tmp_path):
     command = [REPOSITORY / "pipeline" / "accuracy", study_file(tmp_path), "--out", tmp_path / "out", "-j", "2"]

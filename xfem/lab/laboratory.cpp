@@ -1,7 +1,9 @@
 #include "xfem/lab/laboratory.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
@@ -24,6 +26,33 @@ std::vector<Load> total(const std::vector<Load>& held, double factor, const std:
   std::vector<Load> loads = held;
   for (const Load& load : growing) loads.push_back({load.point, factor * load.force});
   return loads;
+}
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The result of the last of several equal runs, its times the medians of all.
+LabResult timed_run(const LabSetup& setup, const common::LabTest& test, int repeats) {
+  LabResult result;
+  std::vector<double> seconds, set_up, analyses;
+  for (int k = 0; k < repeats; ++k) {
+    result = run(setup, test);
+    seconds.push_back(result.seconds);
+    set_up.push_back(result.cpu_seconds.set_up);
+    analyses.push_back(result.cpu_seconds.analyses);
+  }
+  result.seconds = median(seconds);
+  result.cpu_seconds = {median(set_up), median(analyses)};
+  return result;
 }
 
 }  // namespace
@@ -77,14 +106,17 @@ void require_loading(const common::LabTest& test, const std::vector<std::string>
 
 LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = thread_cpu_seconds();
   BreakageParameters parameters = breakage_parameters(test.material, test.breakage);
   parameters.load_patch = parameters.literal ? 0 : setup.load_patch;
   const ParticleModel model(setup.outline, test.mesh_nodes, elastic_constants(test.material),
                             parameters.initiation_radius);
+  const double set_up = thread_cpu_seconds() - cpu_start;
   const IntactModel& elastic = model.elastic;
   const double patch = parameters.load_patch * common::equivalent_diameter(model.area);
 
   LabResult result;
+  result.cpu_seconds.set_up = set_up;
   result.rock = parameters.rock;
   result.mesh = elastic.mesh();
   std::vector<Vec2> centers;
@@ -112,8 +144,10 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
     result.first_failure_mode = parameters.rock.mode(p.s1, p.s3);
     std::vector<Crack> cracks;
     const double least = first.factor * (1 + kJustAbove);
+    const double analyses_start = thread_cpu_seconds();
     for (double factor = least; factor <= test.loading.largest * least; factor *= 1 + test.loading.step) {
       result.breakage = analyse(model, total(held, factor, growing), cracks, parameters);
+      ++result.load_levels;
       result.growth_steps += result.breakage.growth_steps;
       if (result.breakage.status == common::ParticleStatus::broken) result.breakage_load = load_at(factor);
       if (result.breakage.status == common::ParticleStatus::broken ||
@@ -121,14 +155,15 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
         break;
       cracks = result.breakage.cracks;
     }
+    result.cpu_seconds.analyses = thread_cpu_seconds() - analyses_start;
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 
-std::string run_lab_test(const common::LabTest& test, const std::filesystem::path& directory) {
+std::string run_lab_test(const common::LabTest& test, const std::filesystem::path& directory, int repeats) {
   const LabSetup setup = lab_setup(test);
-  const LabResult result = run(setup, test);
+  const LabResult result = timed_run(setup, test, repeats);
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw common::io_failure(fmt::format("{}: {}", directory.string(), failed.message()));

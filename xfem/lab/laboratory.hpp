@@ -38,6 +38,12 @@ struct LabSetup {
 /// The setup of a test, see the file of its kind. Throws bad_input for what the kind does not take.
 LabSetup lab_setup(const common::LabTest& test);
 
+/// CPU time of the calling thread [s], which a busy machine disturbs less than a clock on the wall.
+struct LabCpuSeconds {
+  double set_up = 0;    ///< mesh, factor and averages of the specimen, once in its life
+  double analyses = 0;  ///< of all load levels
+};
+
 struct LabResult {
   HoekBrown rock{0, 0};
   Mesh mesh;
@@ -50,7 +56,9 @@ struct LabResult {
   FailureMode first_failure_mode = FailureMode::none;
   BreakageResult breakage;  ///< the last analysis: of the breakage load, or of the largest
   int growth_steps = 0;     ///< over all load steps
-  double seconds = 0;
+  int load_levels = 0;      ///< analyses made
+  LabCpuSeconds cpu_seconds;
+  double seconds = 0;  ///< on the wall
 };
 
 /// First failure of the intact field (see first_failure.hpp). Then the factor rises from there in steps of
@@ -58,7 +66,8 @@ struct LabResult {
 LabResult run(const LabSetup& setup, const common::LabTest& test);
 
 /// Runs a test and writes summary.json, result.h5, specimen.svg and case.yaml (the resolved test); returns a line for
-/// people. Throws bad_input for a test that cannot be run, io_failure.
-std::string run_lab_test(const common::LabTest& test, const std::filesystem::path& directory);
+/// people. Its times are medians over `repeats` runs (>= 1). Throws bad_input for a test that cannot be run,
+/// io_failure.
+std::string run_lab_test(const common::LabTest& test, const std::filesystem::path& directory, int repeats = 1);
 
 }  // namespace xfem

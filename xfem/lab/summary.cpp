@@ -140,6 +140,11 @@ std::string lab_summary(const LabSetup& setup, const LabResult& result, const co
   summary["growth_steps"] = result.growth_steps;
   summary["status"] = name_of(result.breakage.status);
   if (!result.breakage.reason.empty()) summary["reason"] = result.breakage.reason;
+  summary["load_levels"] = result.load_levels;
+  const double analysis = result.load_levels > 0 ? result.cpu_seconds.analyses / result.load_levels : 0;
+  summary["cpu_seconds"] = {{"set_up", result.cpu_seconds.set_up},
+                            {"analysis", analysis},
+                            {"particle", result.cpu_seconds.set_up + analysis}};
   summary["seconds"] = result.seconds;
   return summary.dump(2) + "\n";
 }
