@@ -314,9 +314,13 @@ BreakageResult Analysis::run() {
 
 ParticleModel::ParticleModel(PolygonView outline_, int nodes, const ElasticConstants& constants,
                              double averaging_radius_in_de)
+    : ParticleModel(outline_, make_mesh(outline_, nodes), constants, averaging_radius_in_de) {}
+
+ParticleModel::ParticleModel(PolygonView outline_, Mesh mesh, const ElasticConstants& constants,
+                             double averaging_radius_in_de)
     : outline(outline_.begin(), outline_.end()),
       area(common::area(outline_)),
-      elastic(make_mesh(outline_, nodes), constants),
+      elastic(std::move(mesh), constants),
       average(elastic.mesh(), averaging_radius_in_de * common::equivalent_diameter(area)) {}
 
 ParticleModel::ParticleModel(const CanonicalOutline& shape, int nodes, const ElasticConstants& constants,

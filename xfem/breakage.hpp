@@ -31,6 +31,8 @@ BreakageParameters in_units_of(double length, BreakageParameters parameters);
 /// Any unit of length will do, as long as loads, cracks and parameters are in the same.
 struct ParticleModel {
   ParticleModel(PolygonView outline, int nodes, const ElasticConstants& constants, double averaging_radius_in_de);
+  /// On a mesh of the caller's.
+  ParticleModel(PolygonView outline, Mesh mesh, const ElasticConstants& constants, double averaging_radius_in_de);
   /// In canonical coordinates: loads as force / De, stresses come out in Pa.
   ParticleModel(const CanonicalOutline& shape, int nodes, const ElasticConstants& constants,
                 double averaging_radius_in_de);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "xfem/meshing/grading.hpp"
 #include "xfem/meshing/placement.hpp"
 #include "xfem/meshing/smoothing.hpp"
 
@@ -38,7 +39,7 @@ struct Triangulated {
 };
 
 /// The placement whose number of points is nearest to `nodes` after a few corrections of h.
-Attempt place_about(PolygonView outline, double area, int nodes, const Vec2& shift) {
+Attempt place_about(PolygonView outline, double area, int nodes, const MeshGrading& grading, const Vec2& shift) {
   double perimeter = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) perimeter += (outline[(i + 1) % outline.size()] - outline[i]).norm();
   // n = A / (h^2 sqrt(3/4)) + P / (2 h) for an equilateral mesh.
@@ -47,7 +48,7 @@ Attempt place_about(PolygonView outline, double area, int nodes, const Vec2& shi
   double too_fine = 0, too_coarse = 0;
   std::optional<Attempt> best;
   for (int pass = 0; pass < kCountPasses; ++pass) {
-    const SizeField size(outline, h);
+    const SizeField size(outline, h, grading);
     Placement placement = place_points(outline, size, shift);
     const double count = static_cast<double>(placement.points.size());
     const double error = std::abs(count - nodes) / nodes;
@@ -60,8 +61,8 @@ Attempt place_about(PolygonView outline, double area, int nodes, const Vec2& shi
   return std::move(*best);
 }
 
-Triangulated triangulate(PolygonView outline, double area, int nodes, const Vec2& shift) {
-  Attempt attempt = place_about(outline, area, nodes, shift);
+Triangulated triangulate(PolygonView outline, double area, int nodes, const MeshGrading& grading, const Vec2& shift) {
+  Attempt attempt = place_about(outline, area, nodes, grading, shift);
   std::vector<Vec2>& points = attempt.placement.points;
   auto triangles = smooth(points, static_cast<int>(attempt.placement.on_edge.size()), attempt.size, kSmoothingPasses);
   double worst = 0;
@@ -72,10 +73,10 @@ Triangulated triangulate(PolygonView outline, double area, int nodes, const Vec2
 
 /// Another position of the lattice helps where the count jumps by whole rows of a thin outline, or where the lattice
 /// meets the outline badly.
-Triangulated triangulate_well(PolygonView outline, int nodes) {
+Triangulated triangulate_well(PolygonView outline, int nodes, const MeshGrading& grading = {}) {
   std::optional<Triangulated> best;
   for (const Vec2& shift : {Vec2(0, 0), Vec2(0.3, 0.4), Vec2(0.6, 0.2), Vec2(0.15, 0.75)}) {
-    Triangulated candidate = triangulate(outline, common::area(outline), nodes, shift);
+    Triangulated candidate = triangulate(outline, common::area(outline), nodes, grading, shift);
     if (!best || candidate.better_than(*best)) best = std::move(candidate);
     if (best->count_error <= kCountTolerance && best->worst_cosine <= kGoodCosine) break;
   }
@@ -186,8 +187,14 @@ std::vector<int> boundary_loop(const Mesh& mesh) {
 }
 
 Mesh make_mesh(PolygonView outline, int nodes) {
+  return make_graded_mesh(outline, nodes, {});
+}
+
+Mesh make_graded_mesh(PolygonView outline, int nodes, const MeshGrading& grading) {
   const CanonicalOutline shape = canonical(outline);
-  Triangulated made = triangulate_well(shape.outline, nodes);
+  MeshGrading canonical_grading = grading;
+  for (Vec2& point : canonical_grading.points) point = shape.to_canonical(point);
+  Triangulated made = triangulate_well(shape.outline, nodes, canonical_grading);
   std::vector<Vec2> points = std::move(made.placement.points);
   const std::size_t boundary = made.placement.on_edge.size();
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -140,6 +140,8 @@ Specification specification(LabTest& test) {
   bind_material(keys, test.material, test.file);
   bind_specimen(keys, test.specimen);
   bind_mesh_nodes(keys, "mesh.nodes", test.mesh_nodes);
+  keys.number("mesh.grading", test.mesh_grading, {1, 8}, "-", UsedBy::xfem,
+              "edge length in the mesh's interior over that where the loads act; 1: even");
   bind_loading(keys, test.loading);
   bind_particle_breakage(keys, test.breakage);
   bind_sweep(keys, test.sweep);

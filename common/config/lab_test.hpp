@@ -47,7 +47,8 @@ struct LabTest {
   std::uint64_t seed = 1;  ///< of a generated particle and of random forces
   MaterialOptions material;
   SpecimenOptions specimen;
-  int mesh_nodes = 150;  ///< key mesh.nodes
+  int mesh_nodes = 150;     ///< key mesh.nodes
+  double mesh_grading = 1;  ///< key mesh.grading
   LabLoading loading;
   BreakageOptions breakage;  ///< `nodes` and `interval` are not used here
   /// Values of keys over which pipeline/lab runs the test, as [key, values]; here only validated.

@@ -11,6 +11,7 @@
 #include "xfem/lab/first_failure.hpp"
 #include "xfem/lab/kinds.hpp"
 #include "xfem/lab/report.hpp"
+#include "xfem/meshing/grading.hpp"
 #include "xfem/solve_frame.hpp"
 
 namespace xfem {
@@ -20,6 +21,16 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// First failure is met from just above, so that rounding does not decide whether the crack starts.
 constexpr double kJustAbove = 1e-9;
+
+/// Finer where the loads of an even mesh act, if the test asks for it.
+Mesh mesh_of(const LabSetup& setup, const common::LabTest& test) {
+  Mesh even = make_mesh(setup.outline, test.mesh_nodes);
+  if (!(test.mesh_grading > 1)) return even;
+  MeshGrading grading{{}, test.mesh_grading};
+  const IntactModel model(std::move(even), elastic_constants(test.material));
+  for (const Load& load : setup.loads(model)) grading.points.push_back(load.point);
+  return make_graded_mesh(setup.outline, test.mesh_nodes, grading);
+}
 
 /// The held loads, and the growing ones times a factor.
 std::vector<Load> total(const std::vector<Load>& held, double factor, const std::vector<Load>& growing) {
@@ -109,7 +120,7 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const double cpu_start = thread_cpu_seconds();
   BreakageParameters parameters = breakage_parameters(test.material, test.breakage);
   parameters.load_patch = parameters.literal ? 0 : setup.load_patch;
-  const ParticleModel model(setup.outline, test.mesh_nodes, elastic_constants(test.material),
+  const ParticleModel model(setup.outline, mesh_of(setup, test), elastic_constants(test.material),
                             parameters.initiation_radius);
   const double set_up = thread_cpu_seconds() - cpu_start;
   const IntactModel& elastic = model.elastic;

@@ -11,12 +11,13 @@ using common::Vec2;
 
 namespace {
 
-constexpr double kGrading = 0.8;      // growth of the edge length with the distance from a short edge
-constexpr double kFinest = 1.0 / 8;   // smallest wanted edge length, in h
-constexpr double kClearance = 0.62;   // of lattice points from the outline, in local edge lengths
-constexpr double kSeparation = 0.75;  // of lattice points of different levels, in local edge lengths
-constexpr int kLevels = 4;            // of lattices, each of half the spacing
-constexpr int kSamples = 32;          // of the size field along an edge
+constexpr double kGrading = 0.8;       // growth of the edge length with the distance from a short edge
+constexpr double kFocusGrading = 0.3;  // and from a point at which the mesh is to be finer
+constexpr double kFinest = 1.0 / 8;    // smallest wanted edge length, in h
+constexpr double kClearance = 0.62;    // of lattice points from the outline, in local edge lengths
+constexpr double kSeparation = 0.75;   // of lattice points of different levels, in local edge lengths
+constexpr int kLevels = 4;             // of lattices, each of half the spacing
+constexpr int kSamples = 32;           // of the size field along an edge
 
 /// Splits the edge at equal steps of the integral of 1 / size; positions in [0, 1), the first 0.
 std::vector<double> subdivide(const Vec2& from, const Vec2& to, const SizeField& size) {
@@ -95,22 +96,25 @@ Vec2 longest_edge_direction(PolygonView outline) {
 
 double segment_distance(const Vec2& point, const Vec2& from, const Vec2& to) {
   const Vec2 edge = to - from;
-  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  const double squared = edge.squaredNorm();
+  const double t = squared > 0 ? std::clamp((point - from).dot(edge) / squared, 0.0, 1.0) : 0;
   return (point - from - t * edge).norm();
 }
 
-SizeField::SizeField(PolygonView outline, double h) : h_(h) {
+SizeField::SizeField(PolygonView outline, double h, const MeshGrading& grading) : h_(h) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2& to = outline[(i + 1) % outline.size()];
     const double length = (to - outline[i]).norm();
-    if (length < 0.75 * h) short_edges_.push_back({outline[i], to, length});
+    if (length < 0.75 * h) fine_.push_back({outline[i], to, length, kGrading});
   }
+  if (!(grading.ratio > 1)) return;
+  for (const Vec2& point : grading.points) fine_.push_back({point, point, h / grading.ratio, kFocusGrading});
 }
 
 double SizeField::operator()(const Vec2& point) const {
   double result = h_;
-  for (const Edge& edge : short_edges_) {
-    result = std::min(result, edge.length + kGrading * segment_distance(point, edge.from, edge.to));
+  for (const Segment& edge : fine_) {
+    result = std::min(result, edge.length + edge.growth * segment_distance(point, edge.from, edge.to));
   }
   return std::max(result, kFinest * h_);
 }
@@ -141,8 +145,8 @@ Placement place_points(PolygonView outline, const SizeField& size, const Vec2& s
     if (level == 0) {
       for (const Vec2& vertex : outline) box.add(in_axes(vertex), 0);
     } else {
-      for (const SizeField::Edge& edge : size.short_edges()) {
-        const double reach = (high - edge.length) / kGrading;
+      for (const SizeField::Segment& edge : size.fine()) {
+        const double reach = (high - edge.length) / edge.growth;
         if (reach <= 0) continue;
         box.add(in_axes(edge.from), reach);
         box.add(in_axes(edge.to), reach);

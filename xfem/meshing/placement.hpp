@@ -5,28 +5,29 @@
 #include <vector>
 
 #include "common/geometry/polygon.hpp"
+#include "xfem/meshing/grading.hpp"
 
 namespace xfem {
 
-/// Wanted edge length at a point: h, less near outline edges shorter than h,
-///   s(x) = min(h, max(h / 8, min over edges (length + 0.8 distance(x, edge)))).
+/// Wanted edge length at a point: h, less near outline edges shorter than h and near the points of a grading,
+///   s(x) = min(h, max(h / 8, min over edges (length + 0.8 distance), min over points (h / ratio + 0.3 distance))).
 class SizeField {
  public:
-  SizeField(common::PolygonView outline, double h);
+  SizeField(common::PolygonView outline, double h, const MeshGrading& grading = {});
   double operator()(const common::Vec2& point) const;
-  bool uniform() const { return short_edges_.empty(); }
+  bool uniform() const { return fine_.empty(); }
   double h() const { return h_; }
 
-  struct Edge {
+  /// Around which the mesh is finer.
+  struct Segment {
     common::Vec2 from, to;
-    double length;
+    double length, growth;
   };
-  /// Those shorter than 3/4 h.
-  const std::vector<Edge>& short_edges() const { return short_edges_; }
+  const std::vector<Segment>& fine() const { return fine_; }
 
  private:
   double h_;
-  std::vector<Edge> short_edges_;
+  std::vector<Segment> fine_;
 };
 
 /// Distance of a point from a segment [m].

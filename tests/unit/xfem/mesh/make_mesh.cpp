@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "tests/unit/xfem/outlines.hpp"
 #include "xfem/mesh.hpp"
+#include "xfem/meshing/grading.hpp"
 
 using namespace xfem;
 using namespace test_outlines;
@@ -126,6 +127,28 @@ TEST_CASE("Extreme outlines and node counts give valid meshes", "[mesh]") {
   }
   CHECK_THROWS_AS(make_mesh(Polygon{{0, 0}, {1, 0}}, 75), common::Error);
   CHECK_THROWS_AS(make_mesh(Polygon{{0, 0}, {0, 1}, {1, 0}}, 75), common::Error);
+}
+
+TEST_CASE("A graded mesh is finer at its points and keeps soundness, angles and number of nodes", "[mesh]") {
+  common::Random random(31);
+  for (int k = 0; k < 60; ++k) {
+    const Polygon p = random_outline(random, random.uniform(0.5, 1));
+    const int nodes = std::array{75, 150, 300, 1200}[k % 4];
+    const double ratio = std::array{2.0, 4.0, 8.0}[k % 3];
+    const Vec2 corner = p[0], inside = 0.3 * p[2] + 0.3 * p[4];
+    const Mesh mesh = make_graded_mesh(p, nodes, {{corner, inside}, ratio});
+    INFO("outline " << k << ", " << nodes << " nodes, ratio " << ratio);
+    check_topology(mesh, p);
+    CHECK(std::abs(static_cast<double>(mesh.nodes.size()) / nodes - 1) <= 0.1);
+    CHECK(smallest_angle_degrees(mesh) >= std::min(20.0, 0.95 * smallest_corner_degrees(p)));
+    const Mesh even = make_mesh(p, nodes);
+    for (const Vec2& point : {corner, inside}) {
+      const int fine = mesh.locate(point), coarse = even.locate(point);
+      if (nodes > 75) CHECK(mesh.areas[fine] < even.areas[coarse] / (0.5 * ratio));
+    }
+  }
+  const Polygon p = random_outline(random, 0.7);
+  CHECK(make_graded_mesh(p, 150, {{p[1]}, 1}).nodes == make_mesh(p, 150).nodes);
 }
 
 TEST_CASE("Slivers are meshed with the angles that their corners allow and the nodes that were asked for", "[mesh]") {
