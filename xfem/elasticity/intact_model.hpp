@@ -93,8 +93,9 @@ class IntactModel {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Area average of the element stresses over a disc of `radius` about each element's centroid (elements whose centroid
-/// lies inside; at least the element itself). radius = 0: the element's own stress.
+/// Area average of the element stresses over a disc of `radius` about each element: about the middle of its boundary
+/// edge, if it has one, else about its centroid (elements whose centroid lies inside; the element itself always).
+/// radius = 0: the element's own stress.
 class StressAverage {
  public:
   StressAverage(const Mesh& mesh, double radius);
