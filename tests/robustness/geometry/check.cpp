@@ -204,13 +204,16 @@ std::string complaint(const common::OverlapOutline& outline, const Overlap& foun
   const auto vertex = [&outline](int i) { return Vec2(outline.x[i % outline.size], outline.y[i % outline.size]); };
   const double size = reference.diameter;
   const double rounding = 1e-15 * size + 0x1p-52 * std::max(Box(sample.pair.a).reach(), Box(sample.pair.b).reach());
+  // A crossing: the heights of an edge's ends over the other edge, at most two diameters away (11 roundings), its place
+  // between them (3), the distance measured here (4). Storage: the vertices and the origin, their sum, its half.
+  const double off = 2e-15 * size + 3 * 0x1p-52 * std::max(Box(sample.pair.a).reach(), Box(sample.pair.b).reach());
   double twice_area = 0;
   for (int i = 0; i < outline.size; ++i) {
     if (!vertex(i).allFinite()) return "polygon not finite";
     twice_area += common::cross(vertex(i), vertex(i + 1));
     const Vec2 middle = outline.origin + 0.5 * (vertex(i) + vertex(i + 1));
     const Outline& owner = i < outline.first_a ? sample.pair.b : sample.pair.a;
-    if (distance_from_edges(owner, middle) > rounding) return "polygon off the boundary";
+    if (distance_from_edges(owner, middle) > off) return "polygon off the boundary";
   }
   if (!(std::abs(0.5 * twice_area - reference.area) <= reference.tolerance)) return "area of the polygon";
   const double chord = vertex(outline.first_a).norm();
