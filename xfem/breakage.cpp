@@ -9,6 +9,7 @@
 #include "common/geometry/chord_split.hpp"
 #include "xfem/crack/cracked_solver.hpp"
 #include "xfem/crack/growth.hpp"
+#include "xfem/crack/toughness.hpp"
 
 namespace xfem {
 namespace {
@@ -55,15 +56,20 @@ class Analysis {
         mesh_(model.elastic.mesh()),
         parameters_(parameters),
         diameter_(common::equivalent_diameter(model.area)),
-        rules_{parameters.rock, std::max(kLigamentInDiameters * diameter_, kLigamentInElements * mesh_.size),
-               parameters.literal},
-        solver_(model.elastic, loads, parameters.literal ? 0 : parameters.load_patch * diameter_),
+        rules_{parameters.rock,
+               std::max(kLigamentInDiameters * diameter_, kLigamentInElements * mesh_.size),
+               parameters.literal,
+               {},
+               parameters.literal ? 0 : parameters.toughness},
+        solver_(model.elastic, loads, parameters.literal ? 0 : parameters.load_patch * diameter_,
+                parameters.literal ? 0 : parameters.face_friction),
         stored_(cracks.begin(), cracks.end()),
         cracks_(stored_) {
     result_.unbalance = IntactModel::unbalance(loads);
   }
 
   BreakageResult run();
+  double first_growth();
 
  private:
   std::vector<Stress> averaged(const std::vector<Stress>& stress) const {
@@ -71,6 +77,7 @@ class Analysis {
   }
   bool restore_cracks();
   bool solve();
+  std::optional<DrivenTip> driven(int crack, int end) const;
   bool grow_tips();
   bool settle(const TipStep& step, int crack);
   bool breaks_or_chips(int crack, bool& breaks);
@@ -224,23 +231,39 @@ bool Analysis::settle(const TipStep& step, int crack) {
   return solve();
 }
 
-/// One step of every active tip, in order; true if something changed and the analysis goes on.
+/// What toughness says of a tip now; empty if strength decides.
+std::optional<DrivenTip> Analysis::driven(int crack, int end) const {
+  if (rules_.toughness <= 0) return std::nullopt;
+  const std::optional<TipDrive> drive = tip_drive(model_.elastic, rules_, state_, cracks_, crack, end);
+  if (!drive) return std::nullopt;
+  return DrivenTip{drive->equivalent >= rules_.toughness, drive->direction};
+}
+
+/// One step of every active tip, in order; true if something changed and the analysis goes on. With a declared
+/// toughness a tip waits at the ligament until all others rest: where it breaks through, the forces near the mouth
+/// part, and the stress intensity at the other end is that of two halves that turn.
 bool Analysis::grow_tips() {
   bool changed = false;
-  for (int c = 0; c < static_cast<int>(cracks_.size()); ++c) {
-    for (int end = 0; end < 2; ++end) {
-      if (cracks_[c].tips[end] != TipState::active) continue;
-      const TipStep step =
-          advance_tip(mesh_, model_.outline, rules_, state_.stress, cutting_cracks(mesh_, cracks_), cracks_, c, end);
-      if (step.outcome == TipOutcome::stays) continue;
-      ++result_.growth_steps;
-      changed = true;
-      if (!settle(step, c)) return false;
-      if (result_.growth_steps > 4 * static_cast<int>(mesh_.triangles.size())) {
-        refuse("crack growth did not come to an end");
-        return false;
+  for (const bool waiting : {false, true}) {
+    for (int c = 0; c < static_cast<int>(cracks_.size()); ++c) {
+      for (int end = 0; end < 2; ++end) {
+        if (cracks_[c].tips[end] != TipState::active) continue;
+        const std::optional<DrivenTip> drive = driven(c, end);
+        const bool waits = rules_.toughness > 0 && at_ligament(mesh_, model_.outline, rules_, cracks_[c], end);
+        if (waits != waiting) continue;
+        const TipStep step = advance_tip(mesh_, model_.outline, rules_, state_.stress, cutting_cracks(mesh_, cracks_),
+                                         cracks_, c, end, drive);
+        if (step.outcome == TipOutcome::stays) continue;
+        ++result_.growth_steps;
+        changed = true;
+        if (!settle(step, c)) return false;
+        if (result_.growth_steps > 4 * static_cast<int>(mesh_.triangles.size())) {
+          refuse("crack growth did not come to an end");
+          return false;
+        }
       }
     }
+    if (changed || rules_.toughness <= 0) break;
   }
   return changed;
 }
@@ -310,6 +333,33 @@ BreakageResult Analysis::run() {
   return std::move(result_);
 }
 
+double Analysis::first_growth() {
+  double smallest = std::numeric_limits<double>::infinity();
+  if (!restore_cracks() || cracks_.empty() || !solve()) return smallest;
+  uncracked_ = averaged(model_.elastic.stresses(solver_.intact_displacement()));
+  const std::vector<int> cutting = cutting_cracks(mesh_, cracks_);
+  for (int c = 0; c < static_cast<int>(cracks_.size()); ++c) {
+    for (int end = 0; end < 2; ++end) {
+      if (cracks_[c].tips[end] != TipState::active) continue;
+      double factor = tip_load_factor(mesh_, rules_, state_.stress, cutting, cracks_[c], end);
+      const std::optional<TipDrive> drive =
+          rules_.toughness > 0 ? tip_drive(model_.elastic, rules_, state_, cracks_, c, end) : std::nullopt;
+      if (drive) {
+        const double tough = rules_.toughness / drive->equivalent;
+        // From some load on the rock ahead fails at once, and unless it is torn there, strength decides.
+        const Stress& ahead = uncracked_[element_ahead(mesh_, cracks_[c], end)];
+        double at_once = load_factor(rules_.rock, ahead) / kFailsAtOnce;
+        if (torn(rules_.rock, {at_once * ahead.xx, at_once * ahead.yy, at_once * ahead.xy})) {
+          at_once = std::numeric_limits<double>::infinity();
+        }
+        factor = std::min(tough, std::max(factor, at_once));
+      }
+      smallest = std::min(smallest, factor);
+    }
+  }
+  return smallest;
+}
+
 }  // namespace
 
 ParticleModel::ParticleModel(PolygonView outline_, int nodes, const ElasticConstants& constants,
@@ -332,6 +382,7 @@ ParticleModel::ParticleModel(const CanonicalOutline& shape, int nodes, const Ela
 
 BreakageParameters in_units_of(double length, BreakageParameters parameters) {
   parameters.minimum_area /= length * length;
+  parameters.toughness /= std::sqrt(length);
   return parameters;
 }
 
@@ -340,6 +391,11 @@ BreakageResult analyse(const ParticleModel& model, std::span<const Load> loads, 
   std::vector<Load> scaled(loads.begin(), loads.end());
   for (Load& load : scaled) load.force *= parameters.load_factor;
   return Analysis(model, scaled, cracks, parameters).run();
+}
+
+double first_growth(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
+                    const BreakageParameters& parameters) {
+  return Analysis(model, loads, cracks, parameters).first_growth();
 }
 
 }  // namespace xfem

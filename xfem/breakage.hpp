@@ -18,7 +18,9 @@ struct BreakageParameters {
   double minimum_fragment = 0.03;  ///< fraction of the parent's area
   double minimum_area = 0.02;      ///< [m^2]
   int max_cracks = 3;
-  bool literal = false;  ///< the paper's own reading
+  bool literal = false;      ///< the paper's own reading
+  double face_friction = 0;  ///< Coulomb coefficient of closed crack faces; 0: smooth
+  double toughness = 0;      ///< K_Ic [Pa sqrt(m)]; 0: none declared, cracks grow by strength alone
   /// A laboratory test grows the crack at the load at which it starts (lambda >= 1 allowed), so that the loads given
   /// here are multiplied by this factor before anything else.
   double load_factor = 1;
@@ -60,5 +62,10 @@ struct BreakageResult {
 /// comes out as `refused` with the reason. A pure function of its arguments.
 BreakageResult analyse(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
                        const BreakageParameters& parameters);
+
+/// The load factor, of these loads, at which the first tip of the given cracks advances; infinite if none ever does. It
+/// is exact: contact of the crack faces does not change the proportion of stress and load. `load_factor` is not used.
+double first_growth(const ParticleModel& model, std::span<const Load> loads, std::span<const Crack> cracks,
+                    const BreakageParameters& parameters);
 
 }  // namespace xfem

@@ -13,7 +13,8 @@ namespace xfem {
 namespace {
 
 /// The choices that both kinds of case share, one per line.
-std::string model_choices(const common::MaterialOptions& material, const common::BreakageOptions& breakage, int nodes) {
+std::string model_choices(const common::MaterialOptions& material, const common::BreakageOptions& breakage,
+                          const common::Effects& effects, int nodes) {
   const HoekBrown rock{material.sigma_ci, material.m_i};
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
@@ -32,6 +33,10 @@ std::string model_choices(const common::MaterialOptions& material, const common:
                                        breakage.initiation_radius));
   line("growth", breakage.literal ? "the paper's reading: adjacent element, point loads"
                                   : "one element per step and tip, patch rule, kink limit, ligament rule");
+  if (effects.toughness)
+    line("toughness", fmt::format("K_Ic = {:.4g} Pa sqrt(m), interaction integral, largest hoop stress",
+                                  material.fracture_toughness));
+  if (effects.face_friction) line("face friction", fmt::format("{:.3g}, on closed faces", breakage.face_friction));
   line("cracks", fmt::format("at most {} per particle, shifted Heaviside enrichment, exact cut integration",
                              breakage.max_cracks));
   line("smallest fragment",
@@ -58,11 +63,13 @@ std::string explain(const common::Scene& scene) {
   for (const auto& [name, on] : {std::pair{"friction", effects.friction},
                                  {"local_damping", effects.local_damping},
                                  {"energy_ledger", effects.energy_ledger},
-                                 {"breakage", effects.breakage}})
+                                 {"breakage", effects.breakage},
+                                 {"toughness", effects.toughness},
+                                 {"face_friction", effects.face_friction}})
     if (on) text += fmt::format("  {}\n", name);
   if (!effects.breakage)
     return text + "\nbreakage is off: there is nothing for xfem to do in this scene; it has no model and no arrays\n";
-  text += "\n# model of a particle\n" + model_choices(scene.material, scene.breakage, scene.breakage.nodes);
+  text += "\n# model of a particle\n" + model_choices(scene.material, scene.breakage, effects, scene.breakage.nodes);
   text += fmt::format("  {:<20}boundary particles, and those below {:.3g} m^2\n", "not breakable",
                       2 * scene.breakage.minimum_area);
   text +=
@@ -80,7 +87,7 @@ std::string explain(const common::Scene& scene) {
 
 std::string explain(const common::LabTest& test) {
   return "# resolved configuration\n" + common::to_yaml(test) + "\n# model of the specimen\n" +
-         model_choices(test.material, test.breakage, test.mesh_nodes) +
+         model_choices(test.material, test.breakage, test.effects, test.mesh_nodes) +
          "\n# written\n  summary.json  result.h5  specimen.svg  case.yaml\n";
 }
 

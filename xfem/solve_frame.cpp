@@ -120,9 +120,11 @@ std::vector<Case> gather_loads(const common::Frame& frame, const std::vector<com
 
 }  // namespace
 
-BreakageParameters breakage_parameters(const common::MaterialOptions& material,
-                                       const common::BreakageOptions& options) {
+BreakageParameters breakage_parameters(const common::MaterialOptions& material, const common::BreakageOptions& options,
+                                       const common::Effects& effects) {
   BreakageParameters parameters;
+  if (effects.face_friction) parameters.face_friction = options.face_friction;
+  if (effects.toughness) parameters.toughness = material.fracture_toughness;
   parameters.rock = {material.sigma_ci, material.m_i};
   parameters.initiation_radius = options.literal ? 0 : options.initiation_radius;
   parameters.minimum_fragment = options.minimum_fragment;
@@ -349,7 +351,7 @@ void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, 
 FrameSolver::FrameSolver(const common::Scene& scene, int threads)
     : implementation_(std::make_unique<Implementation>()) {
   implementation_->options = scene.breakage;
-  implementation_->parameters = breakage_parameters(scene.material, scene.breakage);
+  implementation_->parameters = breakage_parameters(scene.material, scene.breakage, scene.effects);
   implementation_->constants = elastic_constants(scene.material);
   implementation_->cache.emplace(scene.breakage.nodes, implementation_->constants,
                                  implementation_->parameters.initiation_radius);

@@ -20,8 +20,9 @@ using PhaseSeconds = std::map<std::string, double>;
 /// What one frame cost, for `--profile`: counters that may depend on what was cached.
 using PhaseCounts = std::map<std::string, std::int64_t>;
 
-/// The parameters of every particle's analysis, from the scene.
-BreakageParameters breakage_parameters(const common::MaterialOptions& material, const common::BreakageOptions& options);
+/// The parameters of every particle's analysis, from the scene; of the effects toughness and face_friction count.
+BreakageParameters breakage_parameters(const common::MaterialOptions& material, const common::BreakageOptions& options,
+                                       const common::Effects& effects = {});
 ElasticConstants elastic_constants(const common::MaterialOptions& material);
 
 /// Analyses frames and keeps the particles' models (mesh, factor) between them. What it keeps is a cache: the result

@@ -1,6 +1,7 @@
 #include "common/config/lab_test.hpp"
 
 #include "common/config/document.hpp"
+#include "common/config/effects.hpp"
 #include "common/config/outlines.hpp"
 #include "common/config/sections.hpp"
 #include "common/config/suggestion.hpp"
@@ -53,6 +54,45 @@ void bind_pairs(Specification& keys, const std::string& path, std::vector<Vec2>&
       [&pairs](UsedBy) { return print_pairs(pairs); });
 }
 
+/// `[[x1, y1, x2, y2], ...]`.
+void bind_cracks(Specification& keys, std::vector<std::array<Vec2, 2>>& cracks) {
+  const std::string path = "specimen.cracks";
+  const std::string expected = "a list of cracks [x1, y1, x2, y2]";
+  keys.custom(
+      {path, "m", "straight cracks that the specimen has from the start; the load acts along y, 0 is the centroid",
+       expected, UsedBy::xfem},
+      [=, &cracks](const Value& value) {
+        cracks.clear();
+        if (!value.is_list()) refuse(value, path, expected);
+        for (const Value& item : value.items) {
+          if (!item.is_list() || item.items.size() != 4) refuse(item, path, "a crack [x1, y1, x2, y2]");
+          std::array<double, 4> ends;
+          for (int i = 0; i < 4; ++i) {
+            const Value& part = item.items[i];
+            const auto number = part.is_scalar() && !part.quoted ? parse_number(part.text) : std::nullopt;
+            if (!number) refuse(part, path, "a number");
+            ends[i] = *number;
+          }
+          cracks.push_back({Vec2(ends[0], ends[1]), Vec2(ends[2], ends[3])});
+          if (cracks.back()[0] == cracks.back()[1]) refuse(item, path, "a crack with two ends apart");
+        }
+      },
+      [&cracks](UsedBy) {
+        std::string text = "[";
+        for (const auto& [from, to] : cracks) {
+          if (text.size() > 1) text += ", ";
+          text += '[';
+          for (const double x : {from.x(), from.y(), to.x()}) {
+            text += print_number(x);
+            text += ", ";
+          }
+          text += print_number(to.y());
+          text += ']';
+        }
+        return text + ']';
+      });
+}
+
 void bind_specimen(Specification& keys, SpecimenOptions& specimen) {
   keys.number("specimen.diameter", specimen.diameter, kPositive, "m", UsedBy::xfem,
               "brazilian: disc diameter; point_load, multi_contact: longest distance between two vertices");
@@ -82,6 +122,7 @@ void bind_specimen(Specification& keys, SpecimenOptions& specimen) {
               "generated particle: scatter of the corner angles, in spacings");
   keys.number("specimen.aspect", specimen.aspect, {0, 1, true, false}, "-", UsedBy::xfem,
               "generated particle: ratio of width to length of the ellipse on which the corners lie");
+  bind_cracks(keys, specimen.cracks);
 }
 
 void bind_loading(Specification& keys, LabLoading& loading) {
@@ -137,6 +178,7 @@ Specification specification(LabTest& test) {
         test.seed = *number;
       },
       [&test](UsedBy) { return std::to_string(test.seed); });
+  bind_effects(keys, test.effects, EffectsOf::specimen);
   bind_material(keys, test.material, test.file);
   bind_specimen(keys, test.specimen);
   bind_mesh_nodes(keys, "mesh.nodes", test.mesh_nodes);
@@ -177,6 +219,7 @@ LabTest read_lab_test(const std::filesystem::path& file, const Overrides& overri
                                                         " points and " + std::to_string(test.loading.forces.size()) +
                                                         " forces, expected a force for each point");
   }
+  check_literal(keys, test.effects, test.breakage);
   check_sweep(keys, test);
   keys.finish();
   return test;

@@ -26,6 +26,7 @@ struct SpecimenOptions {
   int corners = 7;             ///< of a generated particle
   double roughness = 0.4;      ///< scatter of its corner angles, in spacings
   double aspect = 0.8;         ///< ratio of its width to its length
+  std::vector<std::array<Vec2, 2>> cracks;  ///< straight, from end to end [m]; load axis y, centroid the origin
 };
 
 struct LabLoading {
@@ -45,6 +46,7 @@ struct LabTest {
   std::filesystem::path file;
   LabTestKind test = LabTestKind::brazilian;
   std::uint64_t seed = 1;  ///< of a generated particle and of random forces
+  Effects effects;         ///< toughness, face_friction
   MaterialOptions material;
   SpecimenOptions specimen;
   int mesh_nodes = 150;     ///< key mesh.nodes

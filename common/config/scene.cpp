@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/config/document.hpp"
+#include "common/config/effects.hpp"
 #include "common/config/outlines.hpp"
 #include "common/config/sections.hpp"
 #include "common/config/suggestion.hpp"
@@ -15,59 +16,6 @@ namespace {
 constexpr int kMany = 10'000'000;
 /// Of an assembly's mass in one particle: with more, a grading cannot be met.
 constexpr double kLargestShare = 0.1;
-
-struct NamedEffect {
-  const char* name;
-  bool Effects::*member;
-  UsedBy used_by;
-};
-constexpr NamedEffect kEffects[] = {
-    {"friction", &Effects::friction, UsedBy::dem},
-    {"local_damping", &Effects::local_damping, UsedBy::dem},
-    {"contact_damping", &Effects::contact_damping, UsedBy::dem},
-    {"rolling_resistance", &Effects::rolling_resistance, UsedBy::dem},
-    {"gravity", &Effects::gravity, UsedBy::dem},
-    {"mass_scaling", &Effects::mass_scaling, UsedBy::dem},
-    {"energy_ledger", &Effects::energy_ledger, UsedBy::dem},
-    {"breakage", &Effects::breakage, UsedBy::both},
-};
-
-std::vector<std::string> effect_names() {
-  std::vector<std::string> names;
-  for (const NamedEffect& effect : kEffects) names.emplace_back(effect.name);
-  return names;
-}
-
-Effects read_effects(const Value& list, const std::string& expected) {
-  const std::vector<std::string> names = effect_names();
-  if (!list.is_list()) refuse(list, "effects", expected);
-  Effects effects;
-  for (const Value& item : list.items) {
-    bool known = false;
-    for (const NamedEffect& effect : kEffects) {
-      if (!item.is_scalar() || item.text != effect.name) continue;
-      if (effects.*effect.member) {
-        throw bad_input(item.where + ": effects: found " + in_quotes(item.text) + " twice, expected each effect once");
-      }
-      effects.*effect.member = known = true;
-    }
-    if (known) continue;
-    throw bad_input(item.where + ": effects: found " + describe(item) + ", expected " + expected +
-                    (item.is_scalar() && !nearest_name(item.text, names).empty() ? suggestion(item.text, names, "")
-                                                                                 : std::string()));
-  }
-  return effects;
-}
-
-// The effects that an executable looks at; all of them for printing.
-std::string print_effects(const Effects& effects, UsedBy executable) {
-  std::vector<std::string> names;
-  for (const NamedEffect& effect : kEffects) {
-    const bool counts = executable == UsedBy::neither || effect.used_by == executable || effect.used_by == UsedBy::both;
-    if (counts && effects.*effect.member) names.emplace_back(effect.name);
-  }
-  return "[" + join(names) + "]";
-}
 
 void bind_assembly(Specification& keys, AssemblyOptions& assembly) {
   keys.integer("assembly.particles", assembly.particles, 1, kMany, "-", UsedBy::dem,
@@ -261,11 +209,7 @@ Specification specification(Scene& scene) {
         scene.seed = *number;
       },
       [&scene](UsedBy) { return std::to_string(scene.seed); });
-  const std::string effects = "a list of " + join(effect_names());
-  keys.custom(
-      {"effects", "-", "what exists in the run; what is not named costs nothing", effects, UsedBy::both},
-      [&scene, effects](const Value& value) { scene.effects = read_effects(value, effects); },
-      [&scene](UsedBy executable) { return print_effects(scene.effects, executable); });
+  bind_effects(keys, scene.effects, EffectsOf::scene);
   bind_material(keys, scene.material, scene.file);
   bind_assembly(keys, scene.assembly);
   bind_contact(keys, scene);
@@ -368,6 +312,14 @@ void resolve_grading(Specification& keys, AssemblyOptions& assembly) {
 }
 
 void check_between_keys(Specification& keys, const Scene& scene) {
+  const Effects& effects = scene.effects;
+  if (effects.toughness && !effects.breakage) {
+    keys.fail({"effects"}, "effects: found toughness without breakage, expected both");
+  }
+  if (effects.face_friction && !effects.breakage) {
+    keys.fail({"effects"}, "effects: found face_friction without breakage, expected both");
+  }
+  check_literal(keys, effects, scene.breakage);
   const AssemblyOptions& assembly = scene.assembly;
   if (assembly.diameter_min > assembly.diameter_max) {
     keys.fail({"assembly.diameter_min", "assembly.diameter_max"},

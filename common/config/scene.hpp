@@ -25,17 +25,20 @@ struct Effects {
   bool rolling_resistance = false;
   bool gravity = false;
   bool mass_scaling = false;
+  bool toughness = false;
+  bool face_friction = false;
 };
 
 struct MaterialOptions {
-  std::string name;             ///< of the rock; empty: none given
-  std::string source;           ///< of its numbers
-  double density = 2500;        ///< [kg/m^3]
-  double sigma_ci = 150e6;      ///< uniaxial compressive strength [Pa]
-  double m_i = 25;              ///< Hoek-Brown [-]
-  double young_modulus = 20e9;  ///< [Pa]
-  double poisson_ratio = 0.2;   ///< [-]
-  bool plane_stress = false;    ///< plane strain otherwise
+  std::string name;                 ///< of the rock; empty: none given
+  std::string source;               ///< of its numbers
+  double density = 2500;            ///< [kg/m^3]
+  double sigma_ci = 150e6;          ///< uniaxial compressive strength [Pa]
+  double m_i = 25;                  ///< Hoek-Brown [-]
+  double young_modulus = 20e9;      ///< [Pa]
+  double poisson_ratio = 0.2;       ///< [-]
+  bool plane_stress = false;        ///< plane strain otherwise
+  double fracture_toughness = 1e6;  ///< K_Ic [Pa sqrt(m)], with effect toughness
 };
 
 /// Shape types: a list of outlines, or drawn from the seeded generator.
@@ -130,6 +133,7 @@ struct BreakageOptions {
   double minimum_fragment = 0.03;  ///< fraction of the parent's area
   double minimum_area = 0.02;      ///< [m^2]
   int max_cracks = 3;              ///< per particle
+  double face_friction = 0.6;      ///< Coulomb coefficient of closed crack faces, with effect face_friction [-]
   bool literal = false;            ///< the paper's own reading: point loads, radius 0, adjacent element
 };
 

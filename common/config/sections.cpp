@@ -19,6 +19,8 @@ void bind_material(Specification& keys, MaterialOptions& material, const std::fi
               "Poisson's ratio of the rock (Table 1)");
   keys.flag("material.plane_stress", material.plane_stress, UsedBy::xfem,
             "plane stress in place of plane strain (the paper: plane strain)");
+  keys.number("material.fracture_toughness", material.fracture_toughness, kPositive, "Pa sqrt(m)", UsedBy::xfem,
+              "stress intensity K_Ic at which a crack grows, with effect toughness");
 }
 
 void bind_particle_breakage(Specification& keys, BreakageOptions& breakage) {
@@ -30,6 +32,8 @@ void bind_particle_breakage(Specification& keys, BreakageOptions& breakage) {
               "no fragment smaller than this is made");
   keys.integer("breakage.max_cracks", breakage.max_cracks, 1, 100, "-", UsedBy::xfem,
                "most cracks that one particle may carry");
+  keys.number("breakage.face_friction", breakage.face_friction, kNonNegative, "-", UsedBy::xfem,
+              "Coulomb coefficient of closed crack faces, with effect face_friction");
   keys.flag("breakage.literal", breakage.literal, UsedBy::xfem,
             "the paper's own reading: point loads, radius 0, growth into the adjacent element only");
 }

@@ -32,12 +32,13 @@ Block4& block_of(Blocks& blocks, int node) {
 
 }  // namespace
 
-CrackedSolver::CrackedSolver(const IntactModel& model, std::span<const Load> loads, double patch)
-    : model_(&model), loads_(loads.begin(), loads.end()), patch_(patch) {
+CrackedSolver::CrackedSolver(const IntactModel& model, std::span<const Load> loads, double patch, double face_friction)
+    : model_(&model), loads_(loads.begin(), loads.end()), patch_(patch), face_friction_(face_friction) {
   u0_ = model.solve(model.nodal_forces(loads, patch));
 }
 
-CrackedSolver::CrackedSolver(const IntactModel& model, Eigen::VectorXd forces) : model_(&model) {
+CrackedSolver::CrackedSolver(const IntactModel& model, Eigen::VectorXd forces, double face_friction)
+    : model_(&model), face_friction_(face_friction) {
   u0_ = model.solve(forces);
 }
 
@@ -167,11 +168,14 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest
 
   const std::vector<FaceSegment> faces = face_segments(mesh, model_->gradients(), enrichment);
   const double penalty = kFacePenalty * model_->constants().young_modulus / mesh.size;
-  std::optional<FaceContact> contact = solve_face_contact(schur, right, faces, penalty);
+  std::optional<FaceContact> contact = face_friction_ > 0
+                                           ? solve_frictional_contact(schur, right, faces, penalty, face_friction_)
+                                           : solve_face_contact(schur, right, faces, penalty);
   state.solved = contact.has_value();
   if (contact) {
     state.q = std::move(contact->q);
     state.closed_segments = contact->closed_segments;
+    state.face_shear = std::move(contact->shear);
   }
   double* __restrict u = state.u.data();
   const Eigen::Index dofs = state.u.size();

@@ -25,6 +25,8 @@ struct CrackedState {
   Enrichment enrichment;
   std::vector<Stress> stress;  ///< per element, the area average over its parts, compression positive [Pa]
   int closed_segments = 0;     ///< crack segments in contact
+  /// Shear stress on each of face_segments(...) that resists its slip [Pa]; empty without friction.
+  std::vector<double> face_shear;
 };
 
 /// One load case of one particle; the cracks may change from call to call. The result of a call depends on its cracks
@@ -32,9 +34,10 @@ struct CrackedState {
 class CrackedSolver {
  public:
   /// `patch` [m]: see IntactModel::nodal_forces. Keeps a reference to the model.
-  CrackedSolver(const IntactModel& model, std::span<const Load> loads, double patch = 0);
+  /// `face_friction`: Coulomb coefficient of closed crack faces; 0: smooth.
+  CrackedSolver(const IntactModel& model, std::span<const Load> loads, double patch = 0, double face_friction = 0);
   /// For given nodal forces (2 n, in balance): they act on the standard dofs only.
-  CrackedSolver(const IntactModel& model, Eigen::VectorXd forces);
+  CrackedSolver(const IntactModel& model, Eigen::VectorXd forces, double face_friction = 0);
 
   const Eigen::VectorXd& intact_displacement() const { return u0_; }
 
@@ -62,6 +65,7 @@ class CrackedSolver {
   const IntactModel* model_;
   std::vector<Load> loads_;
   double patch_ = 0;
+  double face_friction_ = 0;
   Eigen::VectorXd u0_;
   std::optional<EdgeLoads> edge_loads_;  ///< made when the first crack asks for it
   std::vector<Column> columns_;

@@ -1,6 +1,8 @@
 #include "xfem/crack/face_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace xfem {
@@ -8,9 +10,14 @@ namespace {
 
 /// Far more than the line search needs: what would still change then are openings of rounding size.
 constexpr int kContactIterations = 50;
+/// The bounds on the shear settle to this share of the largest, within so many steps; a step is at least this share of
+/// the change wanted.
+constexpr int kFrictionIterations = 60;
+constexpr double kFrictionTolerance = 1e-9;
+constexpr double kSmallestShare = 1.0 / 16;
 
-/// Adds the closed faces' penalty k l v v^T.
-void add_penalty(DenseSymmetric& matrix, const FaceSegment& face, double stiffness) {
+/// Adds k l v v^T for the face's direction v, its normal or its tangent.
+void add_direction(DenseSymmetric& matrix, const FaceSegment& face, const Vec2& direction, double stiffness) {
   for (const auto& [f, wf] : face.jumps) {
     for (const auto& [g, wg] : face.jumps) {
       for (int a = 0; a < 2; ++a) {
@@ -18,7 +25,7 @@ void add_penalty(DenseSymmetric& matrix, const FaceSegment& face, double stiffne
           const int row = 2 * f + a;
           const int column = 2 * g + b;
           if (row > column) continue;
-          matrix.at(row, column) += stiffness * face.length * wf * face.normal[a] * wg * face.normal[b];
+          matrix.at(row, column) += stiffness * face.length * wf * direction[a] * wg * direction[b];
         }
       }
     }
@@ -76,6 +83,120 @@ double least_energy(const DenseSymmetric& schur, const Eigen::VectorXd& right, c
   return 1;
 }
 
+/// What a face does under a bound on its shear.
+enum class Shear { none, sticks, forward, backward };
+
+Vec2 tangent(const FaceSegment& face) {
+  return {face.normal.y(), -face.normal.x()};
+}
+
+/// Contact under given bounds on the shear of each face.
+class TrescaContact {
+ public:
+  TrescaContact(const DenseSymmetric& schur, const Eigen::VectorXd& right, const std::vector<FaceSegment>& faces,
+                double penalty, const std::vector<double>& bounds)
+      : schur_(schur), right_(right), faces_(faces), penalty_(penalty), bounds_(bounds) {}
+
+  /// The solution, from `start`; empty if a system is singular.
+  std::optional<Eigen::VectorXd> solve(Eigen::VectorXd start) const {
+    Eigen::VectorXd reached = std::move(start);
+    State state = state_of(reached);
+    std::optional<Eigen::VectorXd> q;
+    for (int iteration = 0; iteration < kContactIterations; ++iteration) {
+      q = solve_linear(state);
+      if (!q || state_of(*q) == state) break;
+      const Eigen::VectorXd step = *q - reached;
+      reached += least(reached, step) * step;
+      state = state_of(reached);
+    }
+    return q;
+  }
+
+  double shear(std::size_t face, double slipped) const {
+    return std::clamp(penalty_ * slipped, -bounds_[face], bounds_[face]);
+  }
+
+ private:
+  struct State {
+    std::vector<bool> closed;
+    std::vector<Shear> shear;
+    bool operator==(const State&) const = default;
+  };
+
+  State state_of(const Eigen::VectorXd& q) const {
+    State state;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      state.closed.push_back(opening(faces_[i], q) < 0);
+      const double trial = penalty_ * slip(faces_[i], q);
+      state.shear.push_back(bounds_[i] == 0       ? Shear::none
+                            : trial > bounds_[i]  ? Shear::forward
+                            : trial < -bounds_[i] ? Shear::backward
+                                                  : Shear::sticks);
+    }
+    return state;
+  }
+
+  std::optional<Eigen::VectorXd> solve_linear(const State& state) const {
+    DenseSymmetric system = schur_;
+    Eigen::VectorXd load = right_;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const FaceSegment& face = faces_[i];
+      if (state.closed[i]) add_direction(system, face, face.normal, penalty_);
+      if (state.shear[i] == Shear::sticks) add_direction(system, face, tangent(face), penalty_);
+      if (state.shear[i] != Shear::forward && state.shear[i] != Shear::backward) continue;
+      const double force = (state.shear[i] == Shear::forward ? -1 : 1) * bounds_[i] * face.length;
+      for (const auto& [function, weight] : face.jumps) {
+        load[2 * function] += force * weight * tangent(face).x();
+        load[2 * function + 1] += force * weight * tangent(face).y();
+      }
+    }
+    return solve_spd(std::move(system), load);
+  }
+
+  /// Fraction of the step at which the energy is least: its derivative is piecewise linear and grows.
+  double least(const Eigen::VectorXd& q, const Eigen::VectorXd& step) const {
+    const double constant = dot(step, product(schur_, q)) - dot(step, right_);
+    const double linear = dot(step, product(schur_, step));
+    std::vector<double> gap, gap_rate, slipped, slip_rate, bends{1.0};
+    const auto bend_at = [&](double value) {
+      if (value > 0 && value < 1) bends.push_back(value);
+    };
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      gap.push_back(opening(faces_[i], q));
+      gap_rate.push_back(opening(faces_[i], step));
+      slipped.push_back(slip(faces_[i], q));
+      slip_rate.push_back(slip(faces_[i], step));
+      if (gap_rate[i] != 0) bend_at(-gap[i] / gap_rate[i]);
+      if (bounds_[i] == 0 || slip_rate[i] == 0) continue;
+      for (const int sign : {1, -1}) bend_at((sign * bounds_[i] / penalty_ - slipped[i]) / slip_rate[i]);
+    }
+    std::sort(bends.begin(), bends.end());
+    const auto derivative = [&](double t) {
+      double sum = constant + linear * t;
+      for (std::size_t i = 0; i < faces_.size(); ++i) {
+        const double pressure = penalty_ * std::min(0.0, gap[i] + gap_rate[i] * t);
+        sum += faces_[i].length * (pressure * gap_rate[i] + shear(i, slipped[i] + slip_rate[i] * t) * slip_rate[i]);
+      }
+      return sum;
+    };
+    double low = 0;
+    double at_low = derivative(low);
+    for (const double bend : bends) {
+      const double at_bend = derivative(bend);
+      if (at_bend >= 0) return at_low < 0 ? low + (bend - low) * (at_low / (at_low - at_bend)) : low;
+      low = bend;
+      at_low = at_bend;
+    }
+    return 1;
+  }
+
+  const DenseSymmetric& schur_;
+  const Eigen::VectorXd& right_;
+  const std::vector<FaceSegment>& faces_;
+  double penalty_;
+  const std::vector<double>& bounds_;
+};
+
 }  // namespace
 
 std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
@@ -91,7 +212,7 @@ std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const
   for (int iteration = 0; iteration < kContactIterations; ++iteration) {
     DenseSymmetric system = schur;
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (closed[i]) add_penalty(system, faces[i], penalty);
+      if (closed[i]) add_direction(system, faces[i], faces[i].normal, penalty);
     }
     std::optional<Eigen::VectorXd> q = solve_spd(std::move(system), right);
     if (!q) return std::nullopt;
@@ -101,6 +222,41 @@ std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const
     const Eigen::VectorXd step = contact.q - reached;
     reached += least_energy(schur, right, faces, penalty, reached, step) * step;
     closed = overlapping(reached);
+  }
+  return contact;
+}
+
+std::optional<FaceContact> solve_frictional_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
+                                                    const std::vector<FaceSegment>& faces, double penalty,
+                                                    double friction) {
+  std::optional<FaceContact> contact = solve_face_contact(schur, right, faces, penalty);
+  if (!contact) return contact;
+  contact->shear.assign(faces.size(), 0.0);
+  if (contact->closed_segments == 0) return contact;
+  std::vector<double> bounds(faces.size(), 0.0);
+  double previous = std::numeric_limits<double>::infinity();
+  double share = 1;
+  for (int iteration = 0; iteration < kFrictionIterations; ++iteration) {
+    double change = 0;
+    double largest = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const double wanted = friction * penalty * std::max(0.0, -opening(faces[i], contact->q));
+      change = std::max(change, std::abs(wanted - bounds[i]));
+      largest = std::max(largest, wanted);
+      bounds[i] += share * (wanted - bounds[i]);
+    }
+    if (change <= kFrictionTolerance * largest) break;
+    if (change >= previous) share = std::max(share / 2, kSmallestShare);
+    previous = change;
+    const TrescaContact tresca(schur, right, faces, penalty, bounds);
+    std::optional<Eigen::VectorXd> q = tresca.solve(contact->q);
+    if (!q) return std::nullopt;
+    contact->q = std::move(*q);
+    contact->closed_segments = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      contact->closed_segments += opening(faces[i], contact->q) < 0;
+      contact->shear[i] = tresca.shear(i, slip(faces[i], contact->q));
+    }
   }
   return contact;
 }

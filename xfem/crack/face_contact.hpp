@@ -11,8 +11,9 @@
 namespace xfem {
 
 struct FaceContact {
-  Eigen::VectorXd q;        ///< enriched dofs, 2 per function [m]
-  int closed_segments = 0;  ///< in contact
+  Eigen::VectorXd q;          ///< enriched dofs, 2 per function [m]
+  int closed_segments = 0;    ///< in contact
+  std::vector<double> shear;  ///< per face, with friction: shear stress that resists its slip [Pa]; else empty
 };
 
 /// The q that has the least energy 1/2 q S q - right q + 1/2 penalty sum l min(0, opening)^2; S the stiffness of the
@@ -22,5 +23,15 @@ struct FaceContact {
 /// many steps.
 std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
                                               const std::vector<FaceSegment>& faces, double penalty);
+
+/// The same with Coulomb friction on closed faces: |shear| <= friction * pressure. Slip counts from the uncracked body,
+/// as for a load that grows from nothing. For given bounds on the shear (Tresca) the solution has the least energy
+///   1/2 q S q - right q + sum l [1/2 penalty min(0, opening)^2 + psi(slip)],
+/// psi' = penalty * slip, at most the bound either way: convex, symmetric, solved as above. The bounds follow from the
+/// pressures, which follow from the bounds: a fixed point, whose steps are halved where they do not shrink. Starts from
+/// the frictionless solution.
+std::optional<FaceContact> solve_frictional_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
+                                                    const std::vector<FaceSegment>& faces, double penalty,
+                                                    double friction);
 
 }  // namespace xfem

@@ -8,6 +8,7 @@ std::vector<FaceSegment> face_segments(const Mesh& mesh, std::span<const Element
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const CrackSegment& segment = enrichment.segments[i];
     const Vec2 along = segment.last.position - segment.first.position;
+    faces[i].segment = static_cast<int>(i);
     faces[i].length = along.norm();
     faces[i].normal = common::perpendicular(along) / faces[i].length;
   }
@@ -29,6 +30,14 @@ double opening(const FaceSegment& segment, const Eigen::VectorXd& q) {
   double sum = 0;
   for (const auto& [function, weight] : segment.jumps) {
     sum += weight * (segment.normal.x() * q[2 * function] + segment.normal.y() * q[2 * function + 1]);
+  }
+  return sum;
+}
+
+double slip(const FaceSegment& segment, const Eigen::VectorXd& q) {
+  double sum = 0;
+  for (const auto& [function, weight] : segment.jumps) {
+    sum += weight * (segment.normal.y() * q[2 * function] - segment.normal.x() * q[2 * function + 1]);
   }
   return sum;
 }

@@ -13,27 +13,6 @@ using common::cross;
 
 const double kHalfRoot = std::sqrt(0.5);
 
-/// A crack seen from one end: its tip is the last point.
-Crack oriented(const Crack& crack, int end) {
-  Crack result = crack;
-  if (end == 0) {
-    std::reverse(result.points.begin(), result.points.end());
-    std::swap(result.tips[0], result.tips[1]);
-  }
-  return result;
-}
-
-/// Unit vector of the chord over at least `length` up to the tip, or over the whole crack.
-Vec2 tip_direction(const Crack& crack, double length) {
-  const Vec2& tip = crack.points.back().position;
-  Vec2 chord = Vec2::Zero();
-  for (std::size_t i = crack.points.size() - 1; i-- > 0;) {
-    chord = tip - crack.points[i].position;
-    if (chord.squaredNorm() >= length * length) break;
-  }
-  return chord / chord.norm();
-}
-
 /// The uncut elements that decide on a tip: the one across the tip edge, and those around the edge's nodes whose
 /// centroid lies ahead of the tip.
 std::vector<int> elements_ahead(const Mesh& mesh, std::span<const int> cutting, const CrackPoint& tip, int next,
@@ -50,7 +29,14 @@ std::vector<int> elements_ahead(const Mesh& mesh, std::span<const int> cutting, 
   return found;
 }
 
-/// Direction of growth under the mean stress of the elements ahead.
+/// The direction, turned back to 45 degrees from `previous` if it kinks by more.
+Vec2 without_sharp_kink(const Vec2& direction, const Vec2& previous) {
+  if (direction.dot(previous) >= kHalfRoot) return direction;
+  const double turn = cross(previous, direction) >= 0 ? 1 : -1;
+  return kHalfRoot * (previous + turn * common::perpendicular(previous));
+}
+
+/// Direction of growth under the stress that decides.
 Vec2 growth_direction(const GrowthRules& rules, const Stress& stress, const Vec2& previous) {
   const PrincipalStress state = principal(stress);
   if (!std::isfinite(rules.rock.load_factor(state.s1, state.s3))) return previous;
@@ -60,16 +46,31 @@ Vec2 growth_direction(const GrowthRules& rules, const Stress& stress, const Vec2
   const bool take_first = std::abs(first) >= std::abs(second);
   Vec2 direction = take_first ? planes.first : planes.second;
   if ((take_first ? first : second) < 0) direction = -direction;
-  if (!rules.literal && direction.dot(previous) < kHalfRoot) {
-    const double turn = cross(previous, direction) >= 0 ? 1 : -1;
-    direction = kHalfRoot * (previous + turn * common::perpendicular(previous));
-  }
-  return direction;
+  return rules.literal ? direction : without_sharp_kink(direction, previous);
 }
 
-/// True if the element failed together with the start of the crack, before any crack turned the stress there.
-bool fails_at_once(const GrowthRules& rules, int element) {
-  return !rules.uncracked.empty() && load_factor(rules.rock, rules.uncracked[element]) <= kFailsAtOnce;
+/// Chord of a crack on which kinks are measured.
+Vec2 last_direction(const Mesh& mesh, const GrowthRules& rules, const Crack& crack) {
+  return tip_direction(crack, rules.literal ? 0 : mesh.size);
+}
+
+/// Direction of growth by strength; empty if nothing ahead of the tip fails.
+std::optional<Vec2> failing_direction(const Mesh& mesh, const GrowthRules& rules, std::span<const Stress> stress,
+                                      std::span<const int> cutting, const Crack& crack, int next,
+                                      const Vec2& previous) {
+  bool fails = false;
+  Stress mean;
+  double area = 0;
+  for (const int t : elements_ahead(mesh, cutting, crack.points.back(), next, previous, rules.literal)) {
+    fails = fails || load_factor(rules.rock, stress[t]) < 1;
+    mean.xx += mesh.areas[t] * stress[t].xx;
+    mean.yy += mesh.areas[t] * stress[t].yy;
+    mean.xy += mesh.areas[t] * stress[t].xy;
+    area += mesh.areas[t];
+  }
+  if (!fails) return std::nullopt;
+  mean = {mean.xx / area, mean.yy / area, mean.xy / area};
+  return growth_direction(rules, fails_at_once(rules, next) ? rules.uncracked[next] : mean, previous);
 }
 
 /// The point at which the ray from the tip leaves the element `next`, or, if the crack would not be valid with it,
@@ -136,9 +137,32 @@ Crack straight_through(const Mesh& mesh, std::span<const int> cutting, const Cra
 
 }  // namespace
 
+Crack oriented(const Crack& crack, int end) {
+  Crack result = crack;
+  if (end == 0) {
+    std::reverse(result.points.begin(), result.points.end());
+    std::swap(result.tips[0], result.tips[1]);
+  }
+  return result;
+}
+
+Vec2 tip_direction(const Crack& crack, double length) {
+  const Vec2& tip = crack.points.back().position;
+  Vec2 chord = Vec2::Zero();
+  for (std::size_t i = crack.points.size() - 1; i-- > 0;) {
+    chord = tip - crack.points[i].position;
+    if (chord.squaredNorm() >= length * length) break;
+  }
+  return chord / chord.norm();
+}
+
 double load_factor(const HoekBrown& rock, const Stress& stress) {
   const PrincipalStress state = principal(stress);
   return rock.load_factor(state.s1, state.s3);
+}
+
+bool fails_at_once(const GrowthRules& rules, int element) {
+  return !rules.uncracked.empty() && load_factor(rules.rock, rules.uncracked[element]) <= kFailsAtOnce;
 }
 
 std::vector<int> cutting_cracks(const Mesh& mesh, std::span<const Crack> cracks) {
@@ -197,8 +221,28 @@ std::optional<Crack> start_crack(const Mesh& mesh, const GrowthRules& rules, std
   return best;
 }
 
+double tip_load_factor(const Mesh& mesh, const GrowthRules& rules, std::span<const Stress> stress,
+                       std::span<const int> cutting, const Crack& crack, int end) {
+  const Crack current = oriented(crack, end);
+  const int next = element_ahead(mesh, current, 1);
+  if (next < 0 || cutting[next] >= 0) return 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  const Vec2 previous = last_direction(mesh, rules, current);
+  for (const int t : elements_ahead(mesh, cutting, current.points.back(), next, previous, rules.literal)) {
+    smallest = std::min(smallest, load_factor(rules.rock, stress[t]));
+  }
+  return smallest;
+}
+
+bool at_ligament(const Mesh& mesh, PolygonView outline, const GrowthRules& rules, const Crack& crack, int end) {
+  const Crack current = oriented(crack, end);
+  const Vec2& tip = current.points.back().position;
+  return distance_to_boundary(outline, tip, last_direction(mesh, rules, current)) <= rules.ligament + mesh.size;
+}
+
 TipStep advance_tip(const Mesh& mesh, PolygonView outline, const GrowthRules& rules, std::span<const Stress> stress,
-                    std::span<const int> cutting, std::span<const Crack> cracks, int crack, int end) {
+                    std::span<const int> cutting, std::span<const Crack> cracks, int crack, int end,
+                    const std::optional<DrivenTip>& driven) {
   Crack current = oriented(cracks[crack], end);
   TipStep step;
   const auto finish = [&](TipOutcome outcome, Crack after, Crack fallback) {
@@ -218,24 +262,18 @@ TipStep advance_tip(const Mesh& mesh, PolygonView outline, const GrowthRules& ru
   if (cutting[next] == crack) return finish(TipOutcome::arrested, with_tip(current, TipState::arrested), current);
   if (cutting[next] >= 0) return finish(TipOutcome::merged, with_tip(current, TipState::at_crack), current);
 
-  const CrackPoint tip = current.points.back();
-  const Vec2 previous = rules.literal ? tip_direction(current, 0) : tip_direction(current, mesh.size);
-  const std::vector<int> ahead = elements_ahead(mesh, cutting, tip, next, previous, rules.literal);
-  bool fails = false;
-  Stress mean;
-  double area = 0;
-  for (const int t : ahead) {
-    fails = fails || load_factor(rules.rock, stress[t]) < 1;
-    mean.xx += mesh.areas[t] * stress[t].xx;
-    mean.yy += mesh.areas[t] * stress[t].yy;
-    mean.xy += mesh.areas[t] * stress[t].xy;
-    area += mesh.areas[t];
+  const Vec2 previous = last_direction(mesh, rules, current);
+  Vec2 direction;
+  if (driven) {
+    if (!driven->advances) return finish(TipOutcome::stays, current, current);
+    // What is left of the particle turns the stress at a tip there.
+    direction = at_ligament(mesh, outline, rules, cracks[crack], end) ? previous
+                                                                      : without_sharp_kink(driven->direction, previous);
+  } else {
+    const std::optional<Vec2> failing = failing_direction(mesh, rules, stress, cutting, current, next, previous);
+    if (!failing) return finish(TipOutcome::stays, current, current);
+    direction = *failing;
   }
-  if (!fails) return finish(TipOutcome::stays, current, current);
-  mean = {mean.xx / area, mean.yy / area, mean.xy / area};
-
-  const Stress& deciding = fails_at_once(rules, next) ? rules.uncracked[next] : mean;
-  const Vec2 direction = growth_direction(rules, deciding, previous);
   const std::optional<CrackPoint> point = exit_point(mesh, current, next, direction, previous, rules.literal);
   if (!point) return finish(TipOutcome::arrested, with_tip(current, TipState::arrested), current);
   Crack grown = current;

@@ -28,14 +28,24 @@ struct GrowthRules {
   bool literal = false;
   /// Averaged stress of each element of the uncracked particle under the same load; empty: nothing fails at once.
   std::span<const Stress> uncracked = {};
+  double toughness = 0;  ///< K_Ic [Pa sqrt(m)], in the unit of length of the mesh; 0: none declared, see toughness.hpp
 };
 
 /// What has a load factor of at most this in the uncracked particle fails at once with the start. Rock strength
 /// scatters by more than 10 % within one specimen; without a margin a field uniform to 0.1 % would not count as one.
 inline constexpr double kFailsAtOnce = 1.1;
 
+/// True if an element fails at once with the start.
+bool fails_at_once(const GrowthRules& rules, int element);
+
 /// Load factor at failure of a stress state.
 double load_factor(const HoekBrown& rock, const Stress& stress);
+
+/// A crack seen from one end, 0 or 1: its tip is the last point.
+Crack oriented(const Crack& crack, int end);
+
+/// Unit vector of the chord over at least `length` up to the last point, or over the whole crack.
+Vec2 tip_direction(const Crack& crack, double length);
 
 /// For each element the index of the crack that cuts it (the lowest), -1: none.
 std::vector<int> cutting_cracks(const Mesh& mesh, std::span<const Crack> cracks);
@@ -63,8 +73,24 @@ struct TipStep {
   Crack fallback;  ///< through, merged: the crack up to the last tip inside, arrested there, if the path is a chip
 };
 
-/// One step of an active tip. `stress`: element stresses of the current cracked state; `cutting`: cutting_cracks.
+/// Smallest load factor of the elements that decide on an active tip by strength; 0 if the tip ends here without one.
+double tip_load_factor(const Mesh& mesh, const GrowthRules& rules, std::span<const Stress> stress,
+                       std::span<const int> cutting, const Crack& crack, int end);
+
+/// True if the ligament rule could hold for a tip that goes straight on by one element.
+bool at_ligament(const Mesh& mesh, PolygonView outline, const GrowthRules& rules, const Crack& crack, int end);
+
+/// What toughness says of a tip.
+struct DrivenTip {
+  bool advances;
+  Vec2 direction;  ///< unit vector
+};
+
+/// One step of an active tip. `stress`: element stresses of the current cracked state; `cutting`: cutting_cracks;
+/// `driven`: what decides in place of the strength ahead of the tip, see toughness.hpp; at the ligament such a tip goes
+/// straight on.
 TipStep advance_tip(const Mesh& mesh, PolygonView outline, const GrowthRules& rules, std::span<const Stress> stress,
-                    std::span<const int> cutting, std::span<const Crack> cracks, int crack, int end);
+                    std::span<const int> cutting, std::span<const Crack> cracks, int crack, int end,
+                    const std::optional<DrivenTip>& driven = std::nullopt);
 
 }  // namespace xfem

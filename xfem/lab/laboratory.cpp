@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "xfem/crack/given_crack.hpp"
 #include "xfem/lab/first_failure.hpp"
 #include "xfem/lab/kinds.hpp"
 #include "xfem/lab/report.hpp"
@@ -66,6 +67,23 @@ LabResult timed_run(const LabSetup& setup, const common::LabTest& test, int repe
   return result;
 }
 
+/// Factor of the growing loads at which a tip of the given cracks first advances; infinite if none does.
+double growth_factor(const ParticleModel& model, const std::vector<Load>& held, const std::vector<Load>& growing,
+                     const std::vector<Crack>& cracks, const BreakageParameters& parameters) {
+  if (cracks.empty()) return kInfinity;
+  if (held.empty()) return first_growth(model, growing, cracks, parameters);
+  // With held loads the field is not proportional to the factor: doubling, then halving the gap, to 1e-9.
+  const auto grows = [&](double factor) {
+    return first_growth(model, total(held, factor, growing), cracks, parameters) <= 1;
+  };
+  double high = 1e-3;
+  for (int i = 0; i < 40 && !grows(high); ++i) high *= 2;
+  if (!grows(high)) return kInfinity;
+  double low = 0;
+  for (int i = 0; i < 40; ++i) (grows((low + high) / 2) ? high : low) = (low + high) / 2;
+  return high;
+}
+
 }  // namespace
 
 LabSetup lab_setup(const common::LabTest& test) {
@@ -118,7 +136,7 @@ void require_loading(const common::LabTest& test, const std::vector<std::string>
 LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = thread_cpu_seconds();
-  BreakageParameters parameters = breakage_parameters(test.material, test.breakage);
+  BreakageParameters parameters = breakage_parameters(test.material, test.breakage, test.effects);
   parameters.load_patch = parameters.literal ? 0 : setup.load_patch;
   const ParticleModel model(setup.outline, mesh_of(setup, test), elastic_constants(test.material),
                             parameters.initiation_radius);
@@ -144,7 +162,12 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const FirstFailure first = first_failure(parameters.rock, constant_average, average, centers);
   const auto load_at = [&](double factor) { return setup.held_load + factor * setup.unit_load; };
   const double shown = first.element < 0 ? 1 : first.factor;
-  result.first_failure_load = load_at(first.factor);
+  std::vector<Crack> cracks;
+  for (const auto& [from, to] : test.specimen.cracks) {
+    cracks.push_back(place_given_crack(elastic.mesh(), model.outline, from, to));
+  }
+  const double start_factor = std::min(first.factor, growth_factor(model, held, growing, cracks, parameters));
+  result.first_failure_load = load_at(start_factor);
   result.breakage_load = kInfinity;
   result.loads = total(held, shown, growing);
   result.element_stress = superposed(constant, shown, unit);
@@ -153,8 +176,7 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
     result.first_failure_point = centers[first.element];
     const PrincipalStress p = principal(result.averaged_stress[first.element]);
     result.first_failure_mode = parameters.rock.mode(p.s1, p.s3);
-    std::vector<Crack> cracks;
-    const double least = first.factor * (1 + kJustAbove);
+    const double least = start_factor * (1 + kJustAbove);
     const double analyses_start = thread_cpu_seconds();
     for (double factor = least; factor <= test.loading.largest * least; factor *= 1 + test.loading.step) {
       result.breakage = analyse(model, total(held, factor, growing), cracks, parameters);

@@ -41,6 +41,30 @@ breakage: {literal: true}
   CHECK(to_yaml(again) == to_yaml(test));
 }
 
+TEST_CASE("A laboratory test takes cracks and the effects that act on one particle") {
+  const scratch::Folder folder;
+  const LabTest test = read_lab_test(folder.write("t.yaml", R"(
+test: brazilian
+effects: [toughness, face_friction]
+material: {fracture_toughness: 2e6}
+specimen: {cracks: [[0, -0.05, 0, 0.05], [0.1, 0, 0.2, 0.1]]}
+breakage: {face_friction: 0.4}
+)"));
+  CHECK(test.effects.toughness);
+  CHECK(test.effects.face_friction);
+  CHECK(test.material.fracture_toughness == 2e6);
+  CHECK(test.breakage.face_friction == 0.4);
+  REQUIRE(test.specimen.cracks.size() == 2);
+  CHECK(test.specimen.cracks[1][1] == Vec2(0.2, 0.1));
+  const LabTest again = read_lab_test(folder.write("r.yaml", to_yaml(test)));
+  CHECK(to_yaml(again) == to_yaml(test));
+  CHECK_THAT(error_of("test: brazilian\neffects: [gravity]\n"), Catch::Contains("expected a list of toughness"));
+  CHECK_THAT(error_of("test: brazilian\nspecimen: {cracks: [[0, 1, 2]]}\n"), Catch::Contains("[x1, y1, x2, y2]"));
+  CHECK_THAT(error_of("test: brazilian\nspecimen: {cracks: [[0, 1, 0, 1]]}\n"), Catch::Contains("two ends apart"));
+  CHECK_THAT(error_of("test: brazilian\neffects: [toughness]\nbreakage: {literal: true}\n"),
+             Catch::Contains("breakage.literal"));
+}
+
 TEST_CASE("A laboratory test that cannot be run or read is refused with its place") {
   CHECK(error_of("mesh: {nodes: 100}\n") ==
         "t.yaml:1:1: test: found nothing, expected the kind of test, one of brazilian, uniaxial, confined, tension, "

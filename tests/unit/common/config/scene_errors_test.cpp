@@ -44,7 +44,7 @@ TEST_CASE("An unknown key is reported with the nearest valid one, or with all of
       {"zork: 1\n", "s.yaml:1:1: unknown key \"zork\"; expected one of " + kSections},
       {"material:\n  zork: 1\n",
        "s.yaml:2:3: unknown key \"zork\" in material; expected one of rock, name, source, density, sigma_ci, m_i, "
-       "young_modulus, poisson_ratio, plane_stress"},
+       "young_modulus, poisson_ratio, plane_stress, fracture_toughness"},
       {"friction: 0.5\n", "s.yaml:1:1: unknown key \"friction\"; did you mean \"contact.friction\"?"},
       {"contact.friction: 0.5\n",
        "s.yaml:1:1: unknown key \"contact.friction\"; expected it in its section, as in contact: {...}"},
@@ -173,7 +173,7 @@ TEST_CASE("A file that cannot be a scene is named") {
 TEST_CASE("Effects are a list of known names, each once") {
   const std::string list =
       "a list of friction, local_damping, contact_damping, rolling_resistance, gravity, mass_scaling, energy_ledger, "
-      "breakage";
+      "breakage, toughness, face_friction";
   check_all({
       {"effects: [friction, zork]\n", "s.yaml:1:21: effects: found \"zork\", expected " + list},
       {"effects: [frictoin]\n",

@@ -37,6 +37,7 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
       {"material.young_modulus", "21e9"},
       {"material.poisson_ratio", "0.25"},
       {"material.plane_stress", "true"},
+      {"material.fracture_toughness", "2e6"},
       {"assembly.particles", "1195"},
       {"assembly.diameter_min", "0.36"},
       {"assembly.diameter_max", "0.58"},
@@ -78,6 +79,7 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
       {"breakage.minimum_fragment", "0.05"},
       {"breakage.minimum_area", "0.01"},
       {"breakage.max_cracks", "2"},
+      {"breakage.face_friction", "0.4"},
       {"breakage.literal", "true"},
       {"output.durability", "every"},
       {"output.keep_frames", "10"},
@@ -274,6 +276,19 @@ TEST_CASE("Of the effects, xfem's configuration hash covers breakage alone") {
     const Scene one = scene_of(folder, "effects: [" + std::string(name) + "]\n");
     CHECK(config_hash(one, UsedBy::dem) != config_hash(none, UsedBy::dem));
     CHECK((config_hash(one, UsedBy::xfem) != config_hash(none, UsedBy::xfem)) == (std::string(name) == "breakage"));
+  }
+}
+
+TEST_CASE("Effects on one particle count for xfem alone and need breakage, which is not the literal one") {
+  const scratch::Folder folder;
+  const Scene plain = scene_of(folder, "effects: [breakage]\n");
+  for (const std::string name : {"toughness", "face_friction"}) {
+    const Scene with = scene_of(folder, "effects: [breakage, " + name + "]\n");
+    CHECK(config_hash(with, UsedBy::dem) == config_hash(plain, UsedBy::dem));
+    CHECK(config_hash(with, UsedBy::xfem) != config_hash(plain, UsedBy::xfem));
+    CHECK_THROWS_WITH(scene_of(folder, "effects: [" + name + "]\n"), Catch::Contains(name + " without breakage"));
+    CHECK_THROWS_WITH(scene_of(folder, "effects: [breakage, " + name + "]\nbreakage: {literal: true}\n"),
+                      Catch::Contains("expected false"));
   }
 }
 
