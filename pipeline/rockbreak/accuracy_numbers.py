@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from .campaign_tables import mean, numbers_of, scatter
 
-NOTICEABLE = 0.9  # part of a cost; times on a busy machine differ by less for no reason
+NOTICEABLE = 0.7  # part of a cost; times on a busy machine differ by less for no reason
 
 
 @dataclass

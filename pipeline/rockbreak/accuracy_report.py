@@ -20,7 +20,7 @@ def write_accuracy(study, plan, sample_seconds):
         of_subject = [ladder_of(knob, subject, study.kind, plan, sample_seconds) for knob in subject.knobs]
         floors[subject.name] = floors_of(of_subject)
         ladders += of_subject
-    ladders.sort(key=lambda ladder: study.knobs().index(ladder.knob.name))  # stable: subjects keep their order
+    ladders.sort(key=lambda ladder: study.knobs.index(ladder.knob.name))  # stable: subjects keep their order
     write_csv(plan.out / "accuracy.csv", csv_rows(study, ladders))
     pictures = {}
     (plan.out / "figures").mkdir(exist_ok=True)

@@ -80,12 +80,9 @@ class Subject:
 class Study:
     file: Path
     subjects: list
+    knobs: list  # names, in the order of the file
 
     kind = property(lambda self: self.subjects[0].campaign.kind)
-
-    def knobs(self):
-        """Names, in the order of the file."""
-        return list(dict.fromkeys(knob.name for subject in self.subjects for knob in subject.knobs))
 
 
 def read_study(path, overrides=()):
@@ -109,7 +106,7 @@ def read_study(path, overrides=()):
             subject.knobs.append(read_knob(knob, name, subject, subjects))
     for subject in subjects:
         gather_runs(subject, file, overrides)
-    return Study(path, subjects)
+    return Study(path, subjects, list(section.content))
 
 
 def read_subject(section, name, overrides):

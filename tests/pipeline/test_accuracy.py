@@ -114,8 +114,8 @@ def test_the_cheapest_good_rung_stays_within_the_scatter():
 
 def test_a_rung_that_costs_as_much_as_the_base_is_not_preferred():
     values = [[1.0, 1.2], [1.0, 1.2], [1.0, 1.2]]
-    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.9)), {}).label == "r1"
-    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.7)), {}).label == "r2"
+    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.5)), {}).label == "r1"
+    assert cheapest_good(ladder(values, cpu=(4.0, 2.0, 1.3)), {}).label == "r2"
 
 
 def test_a_tolerance_decides_in_place_of_the_scatter():
