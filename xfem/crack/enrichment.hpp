@@ -68,8 +68,9 @@ struct Enrichment {
   }
 };
 
-/// Fraction of a node's support that must lie on the other side of the crack; below it the node is not enriched.
-inline constexpr double kSmallestSupport = 1e-4;
+/// Fraction of a node's support that must lie on the other side of the crack; below it the node is not enriched. Points
+/// that keep kEdgeClearance stay above it, so that no crack of production is tied together by a dropped node.
+inline constexpr double kSmallestSupport = 1e-6;
 
 /// Enriched nodes: the nodes of the cut elements, except those of a tip edge inside the particle. A tip on the
 /// boundary is a mouth: its edge's nodes are enriched. So a crack of one or two elements inside has no effect.

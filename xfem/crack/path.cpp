@@ -35,10 +35,17 @@ CrackPoint mouth_near(const Mesh& mesh, const Vec2& position) {
   return point_on_edge(mesh, edge[0], edge[1], fraction);
 }
 
+/// Far more than rounding, far less than an element.
+constexpr double kBeyondMouth = 1e-6;
+
 /// Crossings of the polyline with the mesh edges, from triangle to triangle. A crossing that is undone by the next
 /// one (out and back through one edge) is dropped, so that one triangle lies between two crossings.
-std::vector<CrackPoint> crossings(const Mesh& mesh, std::span<const Vec2> polyline, bool mouth_first, bool mouth_last) {
+std::vector<CrackPoint> crossings(const Mesh& mesh, std::vector<Vec2> polyline, bool mouth_first, bool mouth_last) {
   std::vector<CrackPoint> points;
+  // A little beyond a last mouth, so that the line leaves the mesh by itself, also through a node of the boundary.
+  const Vec2 end = polyline.back();
+  const Vec2 last = end - polyline[polyline.size() - 2];
+  if (mouth_last && last.squaredNorm() > 0) polyline.back() += kBeyondMouth * mesh.size / last.norm() * last;
   int triangle = -1;
   if (mouth_first) {
     points.push_back(mouth_near(mesh, polyline.front()));
@@ -84,7 +91,7 @@ std::vector<CrackPoint> crossings(const Mesh& mesh, std::span<const Vec2> polyli
     }
   }
   if (mouth_last) {
-    const CrackPoint mouth = mouth_near(mesh, polyline.back());
+    const CrackPoint mouth = mouth_near(mesh, end);
     if (edge_elements(mesh, mouth.edge)[0] == triangle && (points.empty() || points.back().edge != mouth.edge)) {
       points.push_back(mouth);
     }
@@ -168,8 +175,8 @@ Crack place_polyline(const Mesh& mesh, std::span<const Vec2> polyline, std::arra
   Crack crack;
   crack.tips = tips;
   if (polyline.size() < 2) return crack;
-  const std::vector<CrackPoint> found =
-      crossings(mesh, polyline, tips[0] == TipState::at_boundary, tips[1] == TipState::at_boundary);
+  const std::vector<CrackPoint> found = crossings(mesh, {polyline.begin(), polyline.end()},
+                                                  tips[0] == TipState::at_boundary, tips[1] == TipState::at_boundary);
   // The longest beginning that is a crack.
   for (const CrackPoint& point : found) {
     crack.points.push_back(point);

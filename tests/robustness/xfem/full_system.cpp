@@ -22,12 +22,6 @@ struct Rows {
   Eigen::VectorXd unbalanced, external, diagonal, terms;
 };
 
-/// A shape function on a part: its gradient times its value of H - H_J (1 for a standard one), and its dofs' row.
-struct Shape {
-  Vec2 gradient;
-  Eigen::Index row;
-};
-
 void add_part(Rows& rows, const Eigen::Matrix3d& d, double area, std::span<const Shape> shapes,
               const Eigen::VectorXd& x) {
   Eigen::Vector3d strain = Eigen::Vector3d::Zero();
@@ -51,8 +45,10 @@ void add_part(Rows& rows, const Eigen::Matrix3d& d, double area, std::span<const
   }
 }
 
-template <typename Visit>
-void for_each_part(const IntactModel& model, const Enrichment& enrichment, const Visit& visit) {
+}  // namespace
+
+void for_each_part(const IntactModel& model, const Enrichment& enrichment,
+                   const std::function<void(double, std::span<const Shape>)>& visit) {
   const Mesh& mesh = model.mesh();
   std::vector<const CutElement*> cut(mesh.triangles.size(), nullptr);
   for (const CutElement& element : enrichment.cut) cut[element.element] = &element;
@@ -73,8 +69,6 @@ void for_each_part(const IntactModel& model, const Enrichment& enrichment, const
     }
   }
 }
-
-}  // namespace
 
 Residual residual_of(const IntactModel& model, std::span<const Load> loads, double patch,
                      const common::Polygon& outline, const CrackedState& state) {
@@ -131,11 +125,10 @@ Residual residual_of(const IntactModel& model, std::span<const Load> loads, doub
   return residual;
 }
 
-double smallest_eigenvalue(const IntactModel& model, const Enrichment& enrichment) {
+Eigen::SparseMatrix<double> scaled_stiffness(const IntactModel& model, const Enrichment& enrichment) {
   const Eigen::Index size = model.dofs() + 2 * static_cast<Eigen::Index>(enrichment.functions.size());
   const Eigen::Matrix3d d = model.constants().matrix();
   std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(size);
   for_each_part(model, enrichment, [&](double area, std::span<const Shape> shapes) {
     const auto strain = [](const Shape& shape) {
       Eigen::Matrix<double, 3, 2> b;
@@ -146,30 +139,28 @@ double smallest_eigenvalue(const IntactModel& model, const Enrichment& enrichmen
       for (const Shape& j : shapes) {
         const Eigen::Matrix2d block = area * strain(i).transpose() * d * strain(j);
         for (int a = 0; a < 2; ++a) {
-          for (int b = 0; b < 2; ++b) {
-            entries.emplace_back(i.row + a, j.row + b, block(a, b));
-            if (i.row + a == j.row + b) diagonal[i.row + a] += block(a, b);
-          }
+          for (int b = 0; b < 2; ++b) entries.emplace_back(i.row + a, j.row + b, block(a, b));
         }
       }
     }
   });
-  std::vector<bool> held(size, false);
-  for (const int dof : model.fixed_dofs()) held[dof] = true;
-  std::vector<Eigen::Triplet<double>> scaled;
-  for (const auto& entry : entries) {
-    if (held[entry.row()] || held[entry.col()]) continue;
-    scaled.emplace_back(entry.row(), entry.col(),
-                        entry.value() / std::sqrt(diagonal[entry.row()]) / std::sqrt(diagonal[entry.col()]));
-  }
-  for (const int dof : model.fixed_dofs()) scaled.emplace_back(dof, dof, 1.0);
   Eigen::SparseMatrix<double> matrix(size, size);
-  matrix.setFromTriplets(scaled.begin(), scaled.end());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * matrix * scale.asDiagonal();
+}
+
+double smallest_eigenvalue(const IntactModel& model, const Enrichment& enrichment) {
+  Eigen::SparseMatrix<double> matrix = scaled_stiffness(model, enrichment);
+  std::vector<bool> held(matrix.rows(), false);
+  for (const int dof : model.fixed_dofs()) held[dof] = true;
+  matrix.prune(
+      [&](Eigen::Index row, Eigen::Index column, double) { return row == column || (!held[row] && !held[column]); });
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
   if (factor.info() != Eigen::Success) return 0;
   // Inverse iteration; held dofs and what is unrelated to the weakest motion fade out.
-  Eigen::VectorXd x(size);
-  for (Eigen::Index i = 0; i < size; ++i) x[i] = held[i] ? 0.0 : 1.0 + 0.1 * static_cast<double>(i % 7);
+  Eigen::VectorXd x(matrix.rows());
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = held[i] ? 0.0 : 1.0 + 0.1 * static_cast<double>(i % 7);
   double smallest = 0;
   for (int iteration = 0; iteration < 4; ++iteration) {
     x /= x.norm();

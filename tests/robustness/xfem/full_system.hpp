@@ -2,11 +2,23 @@
 // solver: no stiffness, no Schur complement, no condensation.
 #pragma once
 
+#include <Eigen/SparseCore>
+#include <functional>
 #include <span>
 
 #include "xfem/crack/cracked_solver.hpp"
 
 namespace growth_walks {
+
+/// A shape function on a part: its gradient times its value of H - H_J (1 for a standard one), and its first dof.
+struct Shape {
+  xfem::Vec2 gradient;
+  Eigen::Index row;  ///< 2 * node, or the number of standard dofs + 2 * function
+};
+
+/// Calls visit(area, shapes) for every part of every element, uncut elements being one part.
+void for_each_part(const xfem::IntactModel& model, const xfem::Enrichment& enrichment,
+                   const std::function<void(double, std::span<const Shape>)>& visit);
 
 struct Residual {
   /// Largest unbalanced force on a dof over the largest load on one and sum of |K_ij x_j|, each divided by the root of
@@ -26,6 +38,9 @@ struct Residual {
 /// What a state leaves unbalanced under the loads, closed faces and held dofs (whose reactions vanish) included.
 Residual residual_of(const xfem::IntactModel& model, std::span<const xfem::Load> loads, double patch,
                      const common::Polygon& outline, const xfem::CrackedState& state);
+
+/// The whole stiffness, standard and enriched, nothing held, with its diagonal scaled to 1.
+Eigen::SparseMatrix<double> scaled_stiffness(const xfem::IntactModel& model, const xfem::Enrichment& enrichment);
 
 /// Smallest eigenvalue of the whole stiffness, standard and enriched, three dofs held, diagonal scaled to 1: next to
 /// nothing if a part of the particle can move without strain, or if two enriched functions are the same.

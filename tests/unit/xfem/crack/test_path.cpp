@@ -110,3 +110,27 @@ TEST_CASE("A crack that does not fit its mesh is named as such") {
   outside.points[0].fraction = 1.5;
   CHECK_THAT(crack_defect(mesh, outside), Catch::Contains("inside its edge"));
 }
+
+TEST_CASE("A line from boundary to boundary is placed as a crack with two mouths, through nodes and along edges too") {
+  const Mesh mesh = plates::plate(1, 1, 8, 8);
+  const auto check = [&](const Vec2& from, const Vec2& to) {
+    for (const auto& [first, last] : {std::pair{from, to}, {to, from}}) {
+      INFO(first.x() << " " << first.y() << " to " << last.x() << " " << last.y());
+      const Crack crack = plates::straight_crack(mesh, first, last, true);
+      REQUIRE(crack.points.size() > 2);
+      CHECK(crack_defect(mesh, crack).empty());
+      CHECK(on_boundary(mesh, crack.points.front()));
+      CHECK(on_boundary(mesh, crack.points.back()));
+      CHECK((crack.points.front().position - first).norm() < 0.05 * mesh.size);
+      CHECK((crack.points.back().position - last).norm() < 0.05 * mesh.size);
+    }
+  };
+  for (int i = 1; i < 8; ++i) {
+    check({0, i / 8.0}, {1, i / 8.0});
+    check({i / 8.0, 0}, {i / 8.0, 1});
+    check({0, i / 8.0}, {1, 1 - i / 8.0});
+  }
+  check({0, 0}, {1, 1});
+  check({0, 1}, {1, 0});
+  check({0, 0.25}, {1, 0.5});
+}
