@@ -17,7 +17,7 @@ TABLE = "lab.csv"
 
 def lab(arguments=None):
     parser = Parser(prog="pipeline/lab", description="Laboratory tests of single specimens against theory. Writes "
-                    "lab.csv, lab.html and, per test, summary.json, result.h5, specimen.svg, case.yaml; prints the "
+                    "lab.csv, lab.html, lab.md and, per test, summary.json, result.h5, specimen.svg, case.yaml; prints the "
                     "table. All tests run anew; in an --out of its own it replaces those that it runs. A test that "
                     "fails stops no other, and what was finished when it is interrupted stays, with its table.")
     parser.add_argument("tests", type=Path, nargs="+", metavar="DIR_OR_FILE", help="for example configs/lab")

@@ -1,6 +1,7 @@
-"""lab.html: the table and the figure of every laboratory test, in one file."""
+"""lab.html: the table and the figure of every laboratory test, in one file. lab.md: the tables alone."""
 import base64
 
+from .campaign_tables import markdown_table
 from .lab_table import HEAD, cells
 from .report import render
 from .run_directory import write_text
@@ -15,6 +16,9 @@ def write_page(out, runs, rows):
             "failed": [run for run in runs if run.failure],
             "seconds": sum(run.summary["seconds"] for run in runs if run.summary),
             "worst": {name: worst([row for run, row in zip(runs, rows) if run.file.stem == name]) for name in groups}}
+    write_text(out / "lab.md", "\n\n".join(
+        f"## {name}\n\n{page['worst'][name]}\n\n{markdown_table(HEAD, [item['cells'] for item in items])}"
+        for name, items in groups.items()) + "\n")
     path = out / "lab.html"
     write_text(path, render("lab.html.j2", page))
     return path

@@ -1,9 +1,14 @@
 // Brazilian test: a disc between two opposite forces (Jaeger, Cook & Zimmerman 2007, section 7.5).
 //
-// At the centre of a disc of diameter D under the line load P, s3 = -2 P / (pi D) and s1 = 3 |s3|. With x = |s3| /
-// sigma_ci, Hoek-Brown (Eq. 4) there reads (4 x)^2 = 1 - m x, so x = 2 / (m + sqrt(m^2 + 64)): P = (pi D sigma_t / 2)
-// 2 m / (m + sqrt(m^2 + 64)). That holds for every m; the mode is tension for m >= 8, where Fairhurst's tangent point
-// m + 1 - 2 sqrt(m + 1) reaches 3, and shear below.
+// A force P that is spread evenly, as vertical traction, over an arc of half-angle a at either end stresses the centre
+// of a disc of diameter D by s1 = b1 2 P / (pi D), s3 = -b3 2 P / (pi D). Of the normal traction there only the mean
+// and the second harmonic reach the centre (Michell's series: no other term of the disc is uniform there), so
+//   b1 = (sin a + sin 3a / 3) / a + sin a / a,  b3 = (sin a + sin 3a / 3) / a - sin a / a;  3 and 1 for a point force.
+// With x = 2 P / (pi D sigma_ci), Hoek-Brown (Eq. 4) reads ((b1 + b3) x)^2 = 1 - m b3 x, so
+//   x = 2 / (m b3 + sqrt(m^2 b3^2 + 4 (b1 + b3)^2)): for a point force P = (pi D sigma_t / 2) 2 m / (m + sqrt(m^2 +
+//   64)).
+// That holds for every m; the mode is tension for m >= 8, where Fairhurst's tangent point m + 1 - 2 sqrt(m + 1) reaches
+// 3, and shear below.
 //
 // The disc is a regular polygon with its corners on the circle; the forces act at its top and bottom corners, exactly D
 // apart, so the number of sides must be even. A mesh has a node at every corner: where its elements are larger than the
@@ -50,9 +55,17 @@ std::optional<double> cracked_disc_load(const common::LabTest& test) {
 
 }  // namespace
 
-double disc_load(const common::MaterialOptions& material, double diameter) {
-  const double m = material.m_i;
-  return 0.5 * std::numbers::pi * diameter * material.sigma_ci / m * 2 * m / (m + std::sqrt(m * m + 64));
+double disc_load(const common::MaterialOptions& material, double diameter, double arc) {
+  double mean = 1, second = 2;  // harmonics of the normal traction
+  if (arc > 0) {
+    const double a = arc / diameter;
+    mean = std::sin(a) / a;
+    second = (std::sin(a) + std::sin(3 * a) / 3) / a;
+  }
+  const double b1 = second + mean, b3 = second - mean;
+  const double tension = material.m_i * b3, deviator = b1 + b3;
+  const double x = 2 / (tension + std::sqrt(tension * tension + 4 * deviator * deviator));
+  return 0.5 * std::numbers::pi * diameter * material.sigma_ci * x;
 }
 
 LabSetup brazilian_test(const common::LabTest& test) {
@@ -71,7 +84,10 @@ LabSetup brazilian_test(const common::LabTest& test) {
   setup.dimensions = {{"diameter", test.specimen.diameter}, {"sides", sides}};
 
   const double strength = test.material.sigma_ci / test.material.m_i;
-  setup.theory_load = disc_load(test.material, test.specimen.diameter);
+  // A literal test has point loads, whatever is asked for.
+  const double patch = test.breakage.literal ? 0 : test.loading.patch;
+  const double arc = patch * common::equivalent_diameter(common::area(setup.outline));
+  setup.theory_load = disc_load(test.material, test.specimen.diameter, arc);
   setup.theory = {{"first_failure_load", *setup.theory_load},
                   {"tensile_load", std::numbers::pi * radius * strength},
                   {"tensile_strength", strength},

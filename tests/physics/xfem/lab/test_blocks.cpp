@@ -4,6 +4,7 @@
 
 #include "laboratory.hpp"
 #include "xfem/lab/platens.hpp"
+#include "xfem/lab/report.hpp"
 #include "xfem/solve_frame.hpp"
 
 using common::LabTestKind;
@@ -26,6 +27,20 @@ TEST_CASE("a confined block first fails at the Hoek-Brown strength of its confin
     // The lateral stress is held: it is s3 at failure, not proportional to the load.
     for (const xfem::Stress& s : result.element_stress) CHECK(std::abs(s.xx - s3 * 1e6) < 1e-9 * stress);
   }
+}
+
+TEST_CASE("blocks in compression break at their strength, on the plane of Hoek-Brown") {
+  for (const double s3 : {0.0, 4e6, 30e6})
+    for (const int nodes : {150, 300}) {
+      common::LabTest test = test_of(LabTestKind::confined, nodes);
+      test.loading.confining_stress = s3;
+      const xfem::LabSetup setup = xfem::lab_setup(test);
+      const xfem::LabResult result = xfem::run(setup, test);
+      INFO("sigma_3 = " << s3 << " Pa, " << nodes << " nodes");
+      CHECK(std::abs(result.breakage_load / *setup.theory_load - 1) < (nodes < 300 ? 0.08 : 0.05));
+      REQUIRE(xfem::fracture_angle_degrees(result.breakage));
+      CHECK(std::abs(*xfem::fracture_angle_degrees(result.breakage) - setup.theory.back().second) < 5);
+    }
 }
 
 TEST_CASE("a confined block's plane turns away from the load as the confining stress grows") {
