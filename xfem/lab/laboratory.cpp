@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "common/error.hpp"
@@ -208,8 +209,11 @@ std::string run_lab_test(const common::LabTest& test, const std::filesystem::pat
     return setup.theory_load ? fmt::format("{:.4f} of theory", load / *setup.theory_load)
                              : fmt::format("{:.4g} kN/m", load / 1e3);
   };
-  return fmt::format("{}: first failure at {}, breakage at {}; {}", setup.test, share(result.first_failure_load),
-                     share(result.breakage_load), (directory / "summary.json").string());
+  const std::string breakage = std::isfinite(result.breakage_load)
+                                   ? "breakage at " + share(result.breakage_load)
+                                   : fmt::format("no breakage up to {:g} times that", test.loading.largest);
+  return fmt::format("{}: first failure at {}, {}; {}", setup.test, share(result.first_failure_load), breakage,
+                     (directory / "summary.json").string());
 }
 
 }  // namespace xfem
