@@ -2,7 +2,7 @@
 import base64
 
 from .campaign_tables import markdown_table
-from .lab_table import HEAD, cells
+from .lab_table import HEAD, cells, percent
 from .report import render
 from .run_directory import write_text
 
@@ -38,6 +38,6 @@ def worst(rows):
     for key, name in (("error_first_failure", "first failure"), ("error_breakage", "breakage")):
         errors = [row[key] for row in rows if row[key] is not None]
         if errors:
-            parts.append(f"{name} {100 * max(errors, key=abs):+.1f} %")
+            parts.append(f"{name} {percent(max(errors, key=abs), 1)}")
     kinds = {row["reference"] for row in rows if row["reference"]}
     return f"largest error against {' and '.join(sorted(kinds))}: {', '.join(parts)}" if parts else "no reference"

@@ -75,6 +75,14 @@ def form(value, text):
     return "–" if value is None else text.format(value)
 
 
+def percent(share, digits=2):
+    """Signed percent; what rounds to nothing has no sign."""
+    if share is None:
+        return "–"
+    text = f"{100 * share:+.{digits}f}"
+    return f"{text if float(text) else text[1:]} %"
+
+
 HEAD = ("test", "reference", "ref. [kN/m]", "first failure", "error", "breakage", "error", "mode", "angle", "ref.",
         "status", "time [s]")
 
@@ -83,10 +91,9 @@ def cells(row):
     """A row as text, in the order of HEAD."""
     kilo = {key: None if row[key] is None else row[key] / 1e3
             for key in ("reference_breakage_load", "first_failure_load", "breakage_load")}
-    percent = {key: None if row[key] is None else 100 * row[key] for key in ("error_first_failure", "error_breakage")}
     return [row["test"], row["reference"] or "–", form(kilo["reference_breakage_load"], "{:.5g}"),
-            form(kilo["first_failure_load"], "{:.5g}"), form(percent["error_first_failure"], "{:+.2f} %"),
-            form(kilo["breakage_load"], "{:.5g}"), form(percent["error_breakage"], "{:+.2f} %"),
+            form(kilo["first_failure_load"], "{:.5g}"), percent(row["error_first_failure"]),
+            form(kilo["breakage_load"], "{:.5g}"), percent(row["error_breakage"]),
             row["failure_mode"] or "–", form(row["fracture_angle_deg"], "{:.1f}°"),
             form(row["reference_angle_deg"], "{:.1f}°"), row["status"], form(row["seconds"], "{:.2f}")]
 

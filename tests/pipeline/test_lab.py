@@ -9,6 +9,7 @@ import time
 import pytest
 
 from conftest import REPOSITORY
+from rockbreak import lab_table
 from rockbreak.errors import RockbreakError
 from rockbreak.lab_table import table_rows, text_table
 from rockbreak.lab_tests import LabRun, plan_tests
@@ -168,3 +169,8 @@ def read(out, process):
     said = getattr(process, "said", "") + (process.stderr.read() or "")
     process.said = said
     return said
+
+
+def test_an_error_that_rounds_to_nothing_has_no_sign():
+    assert [lab_table.percent(share) for share in (-1e-13, 0.0, 1e-13, -0.0123, 0.5, None)] == \
+        ["0.00 %", "0.00 %", "0.00 %", "-1.23 %", "+50.00 %", "–"]
