@@ -13,7 +13,7 @@ from .run_directory import RunDirectory, attributes
 # Preparation sees the other keys; so does it any key that is new.
 UNSEEN_SECTIONS = ("shear", "breakage", "output")
 SEEN_OF_MATERIAL = ("density",)
-UNSEEN_EFFECTS = ("breakage",)
+UNSEEN_EFFECTS = ("breakage", "toughness", "face_friction")
 # These say where things stand, not what they are.
 PLACES = ("output", "preparation.from", "assembly.shapes.file")
 FROM = "preparation.from"

@@ -311,3 +311,9 @@ def test_a_run_from_a_shared_sample_is_the_run_that_prepared_its_own(tmp_path):
     frames = [[attributes(RunDirectory(path).frame_file(k))["payload_hash"] for k in RunDirectory(path).frame_numbers()]
               for path in (solid, tmp_path / "alone")]
     assert frames[0] == frames[1] and kind.read_summary(solid)["complete"]
+
+
+def test_preparation_sees_none_of_the_effects_of_breakage():
+    names = CASE["effects"]
+    case = {**CASE, "effects": [*names, "toughness", "face_friction"]}
+    assert kind.sample_case(case, case, []) == kind.sample_case(CASE, CASE, [])

@@ -76,6 +76,11 @@ Crack place_given_crack(const Mesh& mesh, PolygonView outline, const Vec2& from,
   for (int end = 0; end < 2; ++end) {
     tips[end] = room(outline, ends[end], along) > 0 ? TipState::active : TipState::at_boundary;
   }
+  const auto text = [](const Vec2& p) { return "[" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + "]"; };
+  if (tips[0] == TipState::at_boundary && tips[1] == TipState::at_boundary) {
+    throw common::bad_input("crack from " + text(from) + " to " + text(to) +
+                            " m: found both ends on or outside the boundary, expected at least one inside");
+  }
   Candidate best;
   for (int i = -kOffsets; i <= kOffsets; ++i) {
     for (int j = -kOffsets; j <= kOffsets; ++j) {
@@ -109,7 +114,6 @@ Crack place_given_crack(const Mesh& mesh, PolygonView outline, const Vec2& from,
     }
   }
   if (best.crack.points.empty() || (to - from).norm() < kShortest * mesh.size) {
-    const auto text = [](const Vec2& p) { return "[" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + "]"; };
     throw common::bad_input("crack from " + text(from) + " to " + text(to) +
                             " m: found fewer than three elements along it, expected a longer crack or a finer mesh");
   }

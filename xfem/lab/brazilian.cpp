@@ -39,10 +39,11 @@ int sides_for(int nodes, int wanted) {
 }
 
 /// Load at which a central crack 2 a along the load axis grows, K_I = P / sqrt(pi R) sqrt(a / R) N(a / R) = K_Ic; empty
-/// for other cracks and without a declared toughness. N through 1.060, 1.243, 1.578 at a / R = 0.2, 0.4, 0.6 (Atkinson,
-/// Smelser & Sanchez 1982), even in a / R, within 0.1 % of their values between.
+/// for other cracks or loads and without a declared toughness. N through 1.060, 1.243, 1.578 at a / R = 0.2, 0.4, 0.6
+/// (Atkinson, Smelser & Sanchez 1982), even in a / R, within 0.1 % of their values between.
 std::optional<double> cracked_disc_load(const common::LabTest& test) {
-  if (!test.effects.toughness || test.specimen.cracks.size() != 1) return std::nullopt;
+  const bool point_loads = test.loading.patch == 0 || test.breakage.literal;
+  if (!test.effects.toughness || test.specimen.cracks.size() != 1 || !point_loads) return std::nullopt;
   const auto& [from, to] = test.specimen.cracks.front();
   const double radius = 0.5 * test.specimen.diameter;
   const double half = 0.5 * std::abs(to.y() - from.y());
@@ -97,7 +98,7 @@ LabSetup brazilian_test(const common::LabTest& test) {
     setup.theory_load = cracked_disc_load(test);
     setup.theory.clear();
     if (setup.theory_load) setup.theory = {{"first_failure_load", *setup.theory_load}, {"fracture_angle_deg", 0}};
-    setup.estimate = disc_load(test.material, test.specimen.diameter);
+    setup.estimate = disc_load(test.material, test.specimen.diameter, arc);
     setup.estimate_source = "the disc without its cracks";
   }
   setup.load_patch = test.loading.patch;

@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "xfem/crack/given_crack.hpp"
+#include "xfem/crack/growth.hpp"
 #include "xfem/lab/first_failure.hpp"
 #include "xfem/lab/kinds.hpp"
 #include "xfem/lab/report.hpp"
@@ -68,6 +69,25 @@ LabResult timed_run(const LabSetup& setup, const common::LabTest& test, int repe
   return result;
 }
 
+/// The cracks that the specimen has from the start.
+std::vector<Crack> given_cracks(const Mesh& mesh, PolygonView outline, const common::SpecimenOptions& specimen) {
+  std::vector<Crack> cracks;
+  for (const auto& [from, to] : specimen.cracks) cracks.push_back(place_given_crack(mesh, outline, from, to));
+  std::vector<int> owner(mesh.triangles.size(), -1);
+  for (std::size_t c = 0; c < cracks.size(); ++c) {
+    const std::vector<int> cut = cutting_cracks(mesh, {&cracks[c], 1});
+    for (std::size_t t = 0; t < cut.size(); ++t) {
+      if (cut[t] < 0) continue;
+      if (owner[t] >= 0)
+        throw common::bad_input(fmt::format(
+            "specimen.cracks: found cracks {} and {} (counted from 0) in one element, expected cracks farther apart",
+            owner[t], c));
+      owner[t] = static_cast<int>(c);
+    }
+  }
+  return cracks;
+}
+
 /// Factor of the growing loads at which a tip of the given cracks first advances; infinite if none does.
 double growth_factor(const ParticleModel& model, const std::vector<Load>& held, const std::vector<Load>& growing,
                      const std::vector<Crack>& cracks, const BreakageParameters& parameters) {
@@ -114,6 +134,13 @@ LabSetup lab_setup(const common::LabTest& test) {
       break;
   }
   setup.test = name_of(test.test);
+  // The discs know a theory of theirs.
+  if (!test.specimen.cracks.empty() && test.test != Kind::brazilian && setup.theory_load) {
+    setup.estimate = setup.theory_load;
+    setup.estimate_source = "the specimen without its cracks";
+    setup.theory_load.reset();
+    setup.theory.clear();
+  }
   return setup;
 }
 
@@ -162,12 +189,9 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   const std::vector<Stress> constant_average = held.empty() ? std::vector<Stress>() : model.average(constant);
   const FirstFailure first = first_failure(parameters.rock, constant_average, average, centers);
   const auto load_at = [&](double factor) { return setup.held_load + factor * setup.unit_load; };
-  const double shown = first.element < 0 ? 1 : first.factor;
-  std::vector<Crack> cracks;
-  for (const auto& [from, to] : test.specimen.cracks) {
-    cracks.push_back(place_given_crack(elastic.mesh(), model.outline, from, to));
-  }
+  std::vector<Crack> cracks = given_cracks(elastic.mesh(), model.outline, test.specimen);
   const double start_factor = std::min(first.factor, growth_factor(model, held, growing, cracks, parameters));
+  const double shown = std::isfinite(start_factor) ? start_factor : 1;
   result.first_failure_load = load_at(start_factor);
   result.breakage_load = kInfinity;
   result.loads = total(held, shown, growing);
@@ -176,7 +200,8 @@ LabResult run(const LabSetup& setup, const common::LabTest& test) {
   if (first.element >= 0) {
     result.first_failure_point = centers[first.element];
     const PrincipalStress p = principal(result.averaged_stress[first.element]);
-    result.first_failure_mode = parameters.rock.mode(p.s1, p.s3);
+    const bool tip_tears = parameters.toughness > 0 && start_factor < first.factor;
+    result.first_failure_mode = tip_tears ? FailureMode::tension : parameters.rock.mode(p.s1, p.s3);
     const double least = start_factor * (1 + kJustAbove);
     const double analyses_start = thread_cpu_seconds();
     for (double factor = least; factor <= test.loading.largest * least; factor *= 1 + test.loading.step) {

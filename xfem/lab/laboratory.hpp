@@ -48,11 +48,11 @@ struct LabResult {
   HoekBrown rock{0, 0};
   Mesh mesh;
   std::vector<Load> loads;              ///< at first failure [N/m]
-  std::vector<Stress> element_stress;   ///< at first failure [Pa]
+  std::vector<Stress> element_stress;   ///< of the specimen without cracks, at first failure [Pa]
   std::vector<Stress> averaged_stress;  ///< what the criterion saw there [Pa]
   double first_failure_load = 0;        ///< [N/m]; +inf if the specimen cannot fail
   double breakage_load = 0;             ///< [N/m]; +inf if it did not break
-  Vec2 first_failure_point{0, 0};       ///< centroid of the critical element
+  Vec2 first_failure_point{0, 0};       ///< centroid of the critical element of that field
   FailureMode first_failure_mode = FailureMode::none;
   BreakageResult breakage;  ///< the last analysis: of the breakage load, or of the largest
   int growth_steps = 0;     ///< over all load steps

@@ -147,3 +147,20 @@ TEST_CASE("laboratory tests that make no sense are refused") {
   test.loading.forces = {{0, 1}, {0, -0.9}};
   CHECK_THROWS_WITH(xfem::multi_contact_test(test), Catch::Contains("out of balance"));
 }
+
+TEST_CASE(
+    "cracks that cross the specimen, miss it or meet another are refused, others leave no theory of the intact one") {
+  common::LabTest test = test_of(LabTestKind::tension, 300);
+  const auto outcome = [&test](std::vector<std::array<common::Vec2, 2>> cracks) {
+    test.specimen.cracks = std::move(cracks);
+    return xfem::run(xfem::lab_setup(test), test);
+  };
+  using common::Vec2;
+  CHECK_THROWS_WITH(outcome({{Vec2(1, 0), Vec2(1, 1)}}), Catch::Contains("expected at least one inside"));
+  CHECK_THROWS_WITH(outcome({{Vec2(-1, 0), Vec2(1, 0)}}), Catch::Contains("expected at least one inside"));
+  CHECK_THROWS_WITH(outcome({{Vec2(-0.1, 0), Vec2(0.1, 0)}, {Vec2(-0.1, 0), Vec2(0.1, 0)}}),
+                    Catch::Contains("found cracks 0 and 1"));
+  const xfem::LabSetup setup = xfem::lab_setup(test);
+  CHECK_FALSE(setup.theory_load.has_value());
+  CHECK(setup.estimate.has_value());
+}
