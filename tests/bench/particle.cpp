@@ -22,8 +22,8 @@ void make_model(benchmark::State& state) {
 BENCHMARK(make_model)->Arg(75)->Arg(150)->Arg(300);
 
 // Two opposite forces across the particle, `share` times those at which a crack starts.
-// `per_step`: the time over the steps of growth, each of them enrichment, columns of W, Schur complement, contact of the
-// faces, stress and tip rule; the intact solution and the start are in it too.
+// `per_step`: the time over the steps of growth, each of them enrichment, columns of W, Schur complement, contact of
+// the faces, stress and tip rule; the intact solution and the start are in it too.
 void analyse(benchmark::State& state, double share) {
   const common::Polygon polygon = outline();
   const xfem::ParticleModel model(polygon, static_cast<int>(state.range(0)), kRock, 0.1);
@@ -35,8 +35,8 @@ void analyse(benchmark::State& state, double share) {
   for (auto _ : state) benchmark::DoNotOptimize(xfem::analyse(model, loads, {}, parameters));
   if (steps == 0) return;
   state.counters["steps"] = steps;
-  state.counters["per_step"] = benchmark::Counter(
-      steps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_step"] =
+      benchmark::Counter(steps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_CAPTURE(analyse, intact, 0.9)->Arg(75)->Arg(150)->Arg(300);
 BENCHMARK_CAPTURE(analyse, cracking, 1.1)->Arg(75)->Arg(150)->Arg(300)->Arg(1200);

@@ -51,6 +51,21 @@ double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return sum;
 }
 
+/// Root in [0, 1] of a growing function that is linear between the ascending `bends`, of which the last is 1; 0 or 1 if
+/// it has none.
+template <class Derivative>
+double root_between(const std::vector<double>& bends, const Derivative& derivative) {
+  double low = 0;
+  double at_low = derivative(low);
+  for (const double bend : bends) {
+    const double at_bend = derivative(bend);
+    if (at_bend >= 0) return at_low < 0 ? low + (bend - low) * (at_low / (at_low - at_bend)) : low;
+    low = bend;
+    at_low = at_bend;
+  }
+  return 1;
+}
+
 /// Where on the way from q to q + step the energy 1/2 q S q - right q + 1/2 k sum l min(0, opening)^2 is least, as a
 /// fraction in [0, 1]. Its derivative is piecewise linear and grows; it changes slope where a segment closes or opens.
 double least_energy(const DenseSymmetric& schur, const Eigen::VectorXd& right, const std::vector<FaceSegment>& faces,
@@ -72,15 +87,7 @@ double least_energy(const DenseSymmetric& schur, const Eigen::VectorXd& right, c
     }
     return sum;
   };
-  double low = 0;
-  double at_low = derivative(low);
-  for (const double bend : bends) {
-    const double at_bend = derivative(bend);
-    if (at_bend >= 0) return at_low < 0 ? low + (bend - low) * (at_low / (at_low - at_bend)) : low;
-    low = bend;
-    at_low = at_bend;
-  }
-  return 1;
+  return root_between(bends, derivative);
 }
 
 /// What a face does under a bound on its shear.
@@ -179,15 +186,7 @@ class TrescaContact {
       }
       return sum;
     };
-    double low = 0;
-    double at_low = derivative(low);
-    for (const double bend : bends) {
-      const double at_bend = derivative(bend);
-      if (at_bend >= 0) return at_low < 0 ? low + (bend - low) * (at_low / (at_low - at_bend)) : low;
-      low = bend;
-      at_low = at_bend;
-    }
-    return 1;
+    return root_between(bends, derivative);
   }
 
   const DenseSymmetric& schur_;
