@@ -27,9 +27,9 @@ void write_lab_result(const std::filesystem::path& file, const LabSetup& setup, 
   std::vector<std::array<std::int32_t, 3>> triangles(result.mesh.triangles.begin(), result.mesh.triangles.end());
   put("mesh/triangles", triangles, "1", "rows of mesh/nodes, counter-clockwise");
   put("stress/element", rows(result.element_stress), "Pa",
-      "element stress (xx, yy, xy) at first failure, compression positive");
+      "element stress (xx, yy, xy) at first failure, of the specimen without its cracks, compression positive");
   put("stress/averaged", rows(result.averaged_stress), "Pa",
-      "averaged stress (xx, yy, xy) that the criterion saw at first failure, compression positive");
+      "average of stress/element that the criterion sees (xx, yy, xy), compression positive");
 
   std::vector<Vec2> load_points, forces;
   for (const Load& load : result.loads) {
