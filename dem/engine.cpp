@@ -13,6 +13,12 @@
 #include "dem/effects/mass_scaling.hpp"
 
 namespace dem {
+namespace {
+
+/// A shear force this near to the Coulomb limit, relatively, is at it.
+constexpr double kAtLimit = 1e-9;
+
+}  // namespace
 
 Engine::Engine(const common::Scene& scene, State state, int threads)
     : effects_(scene.effects),
@@ -152,19 +158,24 @@ Health Engine::health() const {
   const Particles& p = state_.particles;
   Health h;
   double unbalance = 0, normal = 0;
-  std::size_t free = 0;
+  std::size_t free = 0, sliding = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.boundary[i]) continue;
     unbalance += forces_.force[i].norm();
     ++free;
   }
   for (std::size_t k = 0; k < slots_.size(); ++k) {
-    if (slots_.overlap_area[k] > 0) normal += slots_.normal_force[k];
+    if (!(slots_.overlap_area[k] > 0)) continue;
+    normal += slots_.normal_force[k];
+    if (!effects_.friction) continue;
+    // Whoever reached the limit was set to it; a re-evaluation may move the limit by a rounding.
+    const double limit = state_.friction * slots_.normal_force[k] / constants_.tangential_stiffness;
+    sliding += std::abs(slots_.shear_displacement[k]) >= (1 - kAtLimit) * limit;
   }
   if (free > 0 && normal > 0) {
     const double contacts = static_cast<double>(now_.contacts);
     h.unbalanced_force = (unbalance / static_cast<double>(free)) / (normal / contacts);
-    h.sliding_fraction = static_cast<double>(now_.sliding) / contacts;
+    h.sliding_fraction = static_cast<double>(sliding) / contacts;
   }
   return h;
 }

@@ -57,6 +57,7 @@ RunDirectory::RunDirectory(fs::path root, bool resume, std::function<void(const 
     if (error)
       throw common::io_failure(fmt::format("{}: cannot create: {}", (root_ / folder).string(), error.message()));
   }
+  lock_.emplace(root_);
 }
 
 fs::path RunDirectory::numbered(const char* kind, std::int64_t index) const {

@@ -9,13 +9,14 @@
 #include "common/config/scene.hpp"
 #include "common/io/frame.hpp"
 #include "common/io/split.hpp"
+#include "dem/directory_lock.hpp"
 
 namespace dem {
 
 class RunDirectory {
  public:
   /// Creates DIR with its folders, or checks that an existing one may be used: empty (but for .lock, run.jsonl and
-  /// empty folders) unless `resume`. Throws bad_input, io_failure.
+  /// empty folders) unless `resume`. It is locked for as long as this object lives. Throws bad_input, io_failure.
   /// `warn` is told of every damaged file that a resumed run passes over.
   RunDirectory(std::filesystem::path root, bool resume, std::function<void(const std::string&)> warn);
 
@@ -49,6 +50,7 @@ class RunDirectory {
 
   std::filesystem::path root_;
   std::function<void(const std::string&)> warn_;
+  std::optional<DirectoryLock> lock_;
 };
 
 }  // namespace dem

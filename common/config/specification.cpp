@@ -238,9 +238,12 @@ void Specification::walk_file(const Value& value, const std::string& path) {
   } catch (const Error& error) {
     throw bad_input(value.where + ": " + path + ": " + error.what());
   }
-  inside_file_ = true;
+  struct Inside {
+    explicit Inside(bool& flag) : inside(flag) { inside = true; }
+    ~Inside() { inside = false; }  // also when an exception passes
+    bool& inside;
+  } const guard(inside_file_);
   walk(keys, path.substr(0, path.rfind('.')));
-  inside_file_ = false;
 }
 
 void Specification::read(const Value& document) {

@@ -163,9 +163,7 @@ ContactSums evaluate(const ContactScene& scene, ContactSlots& slots, std::size_t
     if constexpr (kOn.friction) {
       const double limit = scene.friction * total / kt;
       double shear = (known ? slots.shear_displacement[k] : 0.0) + motion.velocity.tangential * scene.dt;
-      const bool slides = std::abs(shear) > limit;
-      shear = slides ? std::copysign(limit, shear) : shear;
-      sums.sliding += slides;
+      shear = std::abs(shear) > limit ? std::copysign(limit, shear) : shear;
       slots.shear_displacement[k] = shear;
       now.shear_force = -kt * shear;
       force += now.shear_force * common::perpendicular(normal);

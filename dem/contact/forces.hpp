@@ -23,7 +23,6 @@ struct BodyForces {
 /// What the contacts of one instant do in sum. The works are zero without the energy ledger.
 struct ContactSums {
   std::int64_t contacts = 0;
-  std::int64_t sliding = 0;     ///< contacts at the Coulomb limit
   double friction = 0;          ///< dissipated by friction in the step that led here [J]
   double contact_damping = 0;   ///< dissipated by contact damping [J]
   double rolling = 0;           ///< dissipated by rolling resistance [J]
@@ -31,7 +30,6 @@ struct ContactSums {
 
   ContactSums& operator+=(const ContactSums& o) {
     contacts += o.contacts;
-    sliding += o.sliding;
     friction += o.friction;
     contact_damping += o.contact_damping;
     rolling += o.rolling;

@@ -3,8 +3,8 @@ import copy
 import json
 import subprocess
 
-from .child import executable
-from .errors import BAD_INPUT, RockbreakError
+from .child import executable, exit_code
+from .errors import RockbreakError
 from .payload_hash import xxh3_128
 
 
@@ -14,13 +14,13 @@ def as_words(keys):
 
 def explained(program, file, keys, where):
     """What `PROGRAM explain` prints of a file with its keys, which validates it; `where` names the row of the table for
-    a message."""
+    a message. Its exit code passes through."""
     process = subprocess.run([executable(program), "explain", str(file), *as_words(keys)], capture_output=True,
                              text=True, check=False)
     if process.returncode != 0:
         said = process.stderr.strip().removeprefix(f"{program}: error: ") or \
             f"`{program} explain` failed without a message"
-        raise RockbreakError(BAD_INPUT, f"{where}: {said}")
+        raise RockbreakError(exit_code(process.returncode), f"{where}: {said}")
     return process.stdout
 
 

@@ -23,13 +23,19 @@ def executable(name):
     return str(path)
 
 
+def exit_code(returncode):
+    """Of a process: its own, or 128 + the signal that ended it."""
+    return returncode if returncode >= 0 else 128 - returncode
+
+
 def user_seconds_of_ended_children():
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
 class Child:
-    """One running executable. It stays in this process group and inherits the lock of the run directory, and the
-    kernel ends it should this process be killed: nothing writes to a directory that nobody holds."""
+    """One running executable. It stays in this process group and inherits the lock of the run directory (its
+    descriptor stands in ROCKBREAK_LOCK, so that `dem` knows that it need not wait for it), and the kernel ends it
+    should this process be killed: nothing writes to a directory that nobody holds."""
 
     def __init__(self, name, arguments, lock, listener, cwd=None, program=None):
         """`program`: its path; without one, `name` is that of an executable of ours."""
@@ -41,7 +47,8 @@ class Child:
             command = ["setpriv", "--pdeathsig", "KILL", *command]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=cwd,
                                          stderr=subprocess.PIPE, text=True, bufsize=1, errors="replace",
-                                         pass_fds=[lock.fileno()])
+                                         pass_fds=[lock.fileno()],
+                                         env={**os.environ, "ROCKBREAK_LOCK": str(lock.fileno())})
         self._stderr = threading.Thread(target=self._listen, daemon=True)
         self._stderr.start()
 
@@ -94,7 +101,7 @@ class Child:
         code = self.wait()
         if code < 0:
             name = signal.Signals(-code).name
-            raise RockbreakError(128 - code, f"{self.name} was ended by signal {-code} ({name})")
+            raise RockbreakError(exit_code(code), f"{self.name} was ended by signal {-code} ({name})")
         if code == 0:
             raise RockbreakError(IO_FAILURE, f"{self.name} ended before its work was done")
         raise RockbreakError(code, f"{self.name} failed with exit code {code}"

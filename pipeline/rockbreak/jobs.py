@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .child import Child, user_seconds_of_ended_children
+from .child import Child, exit_code, user_seconds_of_ended_children
 from .errors import Interrupted
 
 PAUSE = 0.05  # seconds between two looks at the processes
@@ -61,9 +61,8 @@ class Job:
         before = user_seconds_of_ended_children()
         if self.child.is_alive():
             return False
-        self.code = self.child.wait()
+        self.code = exit_code(self.child.wait())
         self.user_seconds = user_seconds_of_ended_children() - before
-        self.code = self.code if self.code >= 0 else 128 - self.code
         self.state, self.fraction = ("done", 1.0) if self.code == 0 else ("failed", self.fraction)
         self.reason = "" if self.code == 0 else self._last_error()
         return True

@@ -83,11 +83,11 @@ class RunDirectory:
                 leftover.unlink()
 
     def lock(self):
-        return lock_directory(self.path, "pipeline/run")
+        return lock_directory(self.path, "pipeline/run", holders="pipeline/run or dem")
 
 
-def lock_directory(path, program):
-    """Takes a directory for `program`; the returned file holds the lock until it and all its heirs are closed."""
+def lock_directory(path, program, holders=None):
+    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the returned file holds the lock until it and all its heirs are closed."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         file = open(path / ".lock", "w", encoding="utf-8")
@@ -98,7 +98,7 @@ def lock_directory(path, program):
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         file.close()
-        raise RockbreakError(BAD_INPUT, f"{path}: another {program} is at work in this directory; "
+        raise RockbreakError(BAD_INPUT, f"{path}: another {holders or program} is at work in this directory; "
                              "wait for it, or choose another --out") from None
     os.set_inheritable(file.fileno(), True)
     return file

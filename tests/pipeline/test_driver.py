@@ -12,6 +12,8 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
+from rockbreak.cases import explained
+from rockbreak.errors import RockbreakError
 from rockbreak.ledger import read_ledger
 from rockbreak.payload_hash import xxh3_128
 from rockbreak.run_directory import RunDirectory, attributes
@@ -215,6 +217,17 @@ def test_a_locked_directory_is_refused(work):
         fcntl.flock(lock, fcntl.LOCK_EX)
         process = work.run()
     assert process.returncode == 2 and "another pipeline/run" in process.err
+
+
+@pytest.mark.parametrize("ending, code", [("exit 4", 4), ("exit 3", 3), ("kill -9 $$", 137)])
+def test_the_exit_code_of_explain_passes_through(work, monkeypatch, ending, code):
+    work.out.mkdir()
+    (work.out / "dem").write_text(f"#!/bin/sh\necho 'dem: error: the reason' >&2\n{ending}\n")
+    (work.out / "dem").chmod(0o755)
+    monkeypatch.setenv("ROCKBREAK_BIN", str(work.out))
+    with pytest.raises(RockbreakError, match="row 3: the reason") as failure:
+        explained("dem", "scene.yaml", {}, "row 3")
+    assert failure.value.code == code
 
 
 def test_a_missing_scene_is_bad_input(work):

@@ -67,6 +67,18 @@ TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of t
   const std::string last = hash_of(whole / "frames/000002.h5");
   const std::string resolved = text_of(whole / "case.yaml");
 
+  SECTION("the first row of the history counts the contacts at the Coulomb limit, as every other") {
+    const common::Frame frame = common::read_frame(whole / "frames/000000.h5");
+    int sliding = 0;
+    for (std::size_t k = 0; k < frame.contacts.size(); ++k) {
+      sliding += std::abs(frame.contacts.shear_force[k]) > 0.999999 * frame.friction * frame.contacts.normal_force[k];
+    }
+    REQUIRE(sliding > 0);
+    for (const common::Column& c : frame.history) {
+      if (c.name != "sliding_fraction") continue;
+      CHECK(c.values.front() * static_cast<double>(frame.contacts.size()) == Approx(sliding));
+    }
+  }
   SECTION("a finished run ends at once") {
     const auto written = fs::last_write_time(whole / "frames/000002.h5");
     CHECK(go_on(scene, whole).end == dem::RunEnd::finished);
