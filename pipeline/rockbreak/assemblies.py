@@ -1,11 +1,11 @@
 """Pictures of an assembly: particles with force chains, and particles coloured by displacement."""
-import h5py
 import matplotlib
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
+from .sealed import open_sealed
 from .style import GREY, INK
 
 # Weak forces must still be seen on white: the pale end of the map is left out.
@@ -17,7 +17,7 @@ class Picture:
     """What a picture needs of one frame."""
 
     def __init__(self, path):
-        with h5py.File(path, "r") as file:
+        with open_sealed(path) as file:
             self.strain = float(file.attrs["axial_strain"])
             particles, contacts = file["particles"], file["contacts"]
             self.position = particles["position"][:]

@@ -42,6 +42,7 @@ class Child:
         self.name = name
         self._listener = listener
         self._said = []  # messages for people, as heard on stderr
+        self._trouble = None  # what went wrong on our side while listening
         command = [program or executable(name), *arguments]
         if shutil.which("setpriv"):
             command = ["setpriv", "--pdeathsig", "KILL", *command]
@@ -60,11 +61,14 @@ class Child:
                 event = json.loads(line)
             except json.JSONDecodeError:
                 event = None
-            if isinstance(event, dict) and "event" in event:
-                self._listener.child_event(self.name, event)
-            elif line:
-                self._said.append(line)
-                self._listener.child_message(self.name, line)
+            try:
+                if isinstance(event, dict) and "event" in event:
+                    self._listener.child_event(self.name, event)
+                elif line:
+                    self._said.append(line)
+                    self._listener.child_message(self.name, line)
+            except RockbreakError as error:  # the child must not stand still over a full pipe
+                self._trouble = self._trouble or error
 
     def send(self, line):
         try:
@@ -76,6 +80,8 @@ class Child:
     def receive(self):
         """The next line of its stdout, `done` at an orderly end. Raises what a failure says."""
         line = self._process.stdout.readline().rstrip("\n")
+        if self._trouble:
+            raise self._trouble
         if line.startswith("error "):
             _, code, text = (line.split(" ", 2) + [""])[:3]
             self.wait()
@@ -111,6 +117,8 @@ class Child:
         """Waits for an orderly end."""
         if self.wait() != 0:
             self.fail()
+        if self._trouble:
+            raise self._trouble
 
     def stop(self, signum=signal.SIGTERM, patience=10.0):
         """Ends it: a closed stdin, then the signal, then (after `patience` seconds) by force."""

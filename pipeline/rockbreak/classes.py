@@ -10,10 +10,10 @@ a pair of opposite reactions along the line through them then falsifies the mean
 """
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 
 from .paper import FORCES, HORIZONTAL_STRESSES, LARGE_DISPLACEMENT, VERTICAL_STRESSES
+from .sealed import open_sealed
 
 WEAK_FORCE = 1e6    # [N] weak below
 STRONG_FORCE = 5e6  # [N] strong above
@@ -116,7 +116,7 @@ class ContactState:
 
 def read_contact_state(path):
     """Of a frame file."""
-    with h5py.File(path, "r") as file:
+    with open_sealed(path) as file:
         particles, contacts = file["particles"], file["contacts"]
         ids = particles["id"][:]  # ascending (frame/1)
         a, b = np.searchsorted(ids, contacts["a"][:]), np.searchsorted(ids, contacts["b"][:])

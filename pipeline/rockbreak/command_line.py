@@ -5,8 +5,8 @@ import time
 from pathlib import Path
 
 from .driver import Options, drive
-from .errors import BAD_INPUT, Interrupted, RockbreakError
-from .ledger import Ledger
+from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
+from .ledger import Ledger, read_ledger
 from .progress import make_progress
 from .results import Results
 from .run_directory import RunDirectory
@@ -38,6 +38,9 @@ def guarded(program, work, go_on="--resume"):
         return interrupt.code
     except KeyboardInterrupt:
         return 130
+    except OSError as error:
+        print(f"{program}: {error.filename or 'a file'}: {error.strerror or error}", file=sys.stderr)
+        return IO_FAILURE
     return 0
 
 
@@ -58,13 +61,20 @@ def run(arguments=None):
     def work():
         directory = drive(Options(options.case, options.out, options.mode, options.resume, options.overrides,
                                   options.threads), make_progress())
-        finished = directory.report_file if not options.no_report else directory.summary_file
-        newest_frame = directory.frame_file(directory.frame_numbers()[-1])
-        if not finished.exists() or finished.stat().st_mtime < newest_frame.stat().st_mtime:
+        if not is_concluded(directory, with_report=not options.no_report):
             conclude(directory, with_report=not options.no_report)
-        print(finished)
+        print(directory.summary_file if options.no_report else directory.report_file)
 
     return guarded(parser.prog, work)
+
+
+def is_concluded(directory, with_report):
+    """Whether summary (and report) are of the files that stand here now: by the ledger, as clocks can jump."""
+    kinds = [event["event"] for event in read_ledger(directory.ledger_file)]
+    changed = max((at for at, kind in enumerate(kinds) if kind in ("frame", "split")), default=-1)
+    concluded = kinds[changed + 1:]
+    return (directory.summary_file.exists() and ("summary" in concluded or "report" in concluded)
+            if not with_report else directory.report_file.exists() and "report" in concluded)
 
 
 def conclude(directory, with_report):
@@ -72,6 +82,8 @@ def conclude(directory, with_report):
     results = Results(directory)
     write_summary(directory, results.summary)
     if not with_report:
+        with Ledger(directory.ledger_file) as ledger:
+            ledger.write("summary", path=directory.summary_file.name)
         return
     from .report import write_report  # matplotlib is slow to load: only where figures are made
     begin = time.perf_counter()

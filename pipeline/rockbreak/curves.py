@@ -2,12 +2,12 @@
 
 `runs` is a list of Results; a single run may show more (components, the paper's numbers) than a comparison.
 """
-import h5py
 import numpy as np
 from matplotlib.figure import Figure
 
 from . import paper
 from .history import running_mean, shear_rows, sin_phi
+from .sealed import open_sealed
 from .style import CYCLE, GREY, INK, LIGHT, LINES, ORANGE, SKY, curve_figure, thinned
 from .summary import SMOOTHING_WINDOW
 
@@ -115,7 +115,7 @@ def orientations(runs):
     edges = np.linspace(0, 2 * np.pi, 25)
     fine = np.linspace(0, 2 * np.pi, 361)
     for (label, run, k), color, line in zip(shown, CYCLE, LINES):
-        with h5py.File(run.directory.frame_file(k), "r") as file:
+        with open_sealed(run.directory.frame_file(k)) as file:
             x, y = file["contacts/normal"][:][file["contacts/normal_force"][:] > 0].T
         fit = run.anisotropies(k)
         if fit is None:

@@ -3,20 +3,21 @@
 Resident mode talks to two processes that stay (`serve`); one-shot mode starts one process per frame and per split.
 Both give the same payloads; so does a run that was killed and resumed.
 """
+import contextlib
 import re
 import signal
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from .child import Child, user_seconds_of_ended_children
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
-from .run_directory import RunDirectory, attributes, broken_in, written_file
+from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, written_file
+from .sealed import open_sealed
 
 
 @dataclass
@@ -186,6 +187,7 @@ class Run:
         self.directory.drop_splits_after(newest)
         if newest is not None:
             self._learn_case()
+            self._register_unknown(newest)
             self._solve_missing(newest)
             if self._is_final(newest):
                 return
@@ -217,11 +219,20 @@ class Run:
         self._breakable = "breakage" in (case.get("effects") or [])
         self._target_strain = (case.get("shear") or {}).get("axial_strain")
         if self._breakable:
-            (self.directory.path / "splits").mkdir(exist_ok=True)
+            make_folder(self.directory.path / "splits")
             self._broken = 0
 
     def _is_final(self, k):
         return bool(attributes(self.directory.frame_file(k)).get("final", 0))
+
+    def _register_unknown(self, newest):
+        """Frames and splits that stand here, but of which the ledger had not heard when the driver was killed."""
+        known = {event.get("path") for event in read_ledger(self.directory.ledger_file)}
+        for k in range(newest + 1):
+            if f"frames/{k:06d}.h5" not in known and is_valid(self.directory.frame_file(k)):
+                self._register_frame(k, dem_seconds=0.0)
+            if self._breakable and f"splits/{k:06d}.h5" not in known and self.directory.split_answers(k):
+                self._register_split(k, waited=0.0, handover=0.0)
 
     def _solve_missing(self, newest):
         """Every split that a resumed run needs: of the newest frame, and of any before it that were lost."""
@@ -246,7 +257,7 @@ class Run:
     def _register_frame(self, k, dem_seconds):
         path = self.directory.frame_file(k)
         try:
-            with h5py.File(path, "r") as file:
+            with open_sealed(path) as file:
                 state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
                          "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
                 final = bool(file.attrs["final"])
@@ -271,7 +282,7 @@ class Run:
 
 
 def _refusals_in(path):
-    with h5py.File(path, "r") as file:
+    with open_sealed(path) as file:
         if "refusals" not in file or len(file["refusals/particle"]) == 0:
             return []
         reasons = file["refusals/reason"].asstr()[:]
@@ -317,7 +328,8 @@ def drive(options, progress):
             try:
                 run.execute()
             except (RockbreakError, Interrupted) as end:
-                ledger.write("end", code=end.code, reason=str(end), **cpu_seconds())
+                with contextlib.suppress(RockbreakError):  # the ledger may be what fails
+                    ledger.write("end", code=end.code, reason=str(end), **cpu_seconds())
                 raise
             ledger.write("end", code=0, **cpu_seconds())
     return directory

@@ -20,3 +20,8 @@ class Interrupted(Exception):
         super().__init__(f"signal {signum}")
         self.signum = signum
         self.code = 128 + signum
+
+
+def cannot(what, path, error):
+    """What the system said of a file, as an error that names the file."""
+    return RockbreakError(IO_FAILURE, f"{path}: cannot {what}: {error.strerror or error}")

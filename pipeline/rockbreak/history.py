@@ -1,8 +1,8 @@
 """The history of a run: the rows of all frames as one table of columns (history/* of frame/1)."""
-import h5py
 import numpy as np
 
 from .errors import BAD_INPUT, RockbreakError
+from .sealed import open_sealed
 
 
 def read_history(directory):
@@ -14,7 +14,7 @@ def read_history(directory):
     for k in directory.frame_numbers():
         path = directory.frame_file(k)
         try:
-            with h5py.File(path, "r") as file:
+            with open_sealed(path) as file:
                 rows = {name: column[:] for name, column in file["history"].items()}
         except (OSError, KeyError) as error:
             raise RockbreakError(BAD_INPUT, f"{path}: no readable history: {error}") from error

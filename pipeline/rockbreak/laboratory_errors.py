@@ -6,9 +6,10 @@ result.h5), and returns a signed error or None. Lengths are in De = sqrt(4 A / p
 import math
 from functools import lru_cache
 
-import h5py
 import numpy as np
 from matplotlib.tri import Triangulation
+
+from .sealed import open_sealed
 
 # Fields are compared outside discs of this radius [De] about the loads: there a point force has no finite stress.
 NEAR_A_LOAD = 0.15
@@ -127,7 +128,7 @@ def fragment(run, reference):
 def field_of(out, name):
     """Centroids, areas, stress (xx, yy, xy) per unit load, load points and a finder of elements; None where part of the
     load is held, as stress is then not proportional to it."""
-    with h5py.File(out / "result.h5", "r") as file:
+    with open_sealed(out / "result.h5") as file:
         nodes, triangles = file["mesh/nodes"][:], file["mesh/triangles"][:]
         stress, load = file[f"stress/{name}"][:], float(file.attrs["first_failure_load"])
         loads = file["loads/point"][:] if "loads/point" in file else np.zeros((0, 2))

@@ -1,29 +1,42 @@
 """run.jsonl: one JSON object per line and event, appended and flushed at once.
 
-Events are `start`, `frame`, `split`, `warning`, `end` and `report`; each has `event` and `time` (Unix seconds).
+Events are `start`, `frame`, `split`, `warning`, `end`, `summary` and `report`; each has `event` and `time` (Unix seconds).
 """
+import contextlib
 import json
+import os
 import re
 import threading
 import time
 
-from .errors import BAD_INPUT, RockbreakError
+from .errors import BAD_INPUT, RockbreakError, cannot
 
 
 class Ledger:
-    """Appends events. A line that a killed run left half written is cut off before the first append."""
+    """Appends events. A line that a killed run left half written is cut off before the first append, one that the disk
+    had no room for at once."""
 
     def __init__(self, path):
         self.path = path
-        _drop_half_line(path)
-        self._file = open(path, "a", encoding="utf-8")
         self._lock = threading.Lock()  # children's warnings arrive on threads of their own
+        try:
+            _drop_half_line(path)
+            self._file = open(path, "ab", buffering=0)
+        except OSError as error:
+            raise cannot("write", path, error) from error
 
     def write(self, event, **fields):
         line = json.dumps({"event": event, "time": round(time.time(), 3), **fields}) + "\n"
         with self._lock:
-            self._file.write(line)
-            self._file.flush()
+            end = os.fstat(self._file.fileno()).st_size
+            try:
+                rest = line.encode("utf-8")
+                while rest:
+                    rest = rest[self._file.write(rest):]
+            except OSError as error:
+                with contextlib.suppress(OSError):
+                    os.ftruncate(self._file.fileno(), end)
+                raise cannot("write", self.path, error) from error
 
     def close(self):
         self._file.close()
@@ -48,20 +61,24 @@ def _drop_half_line(path):
 def read_ledger(path):
     """All complete events in order; a truncated last line is left out, a missing file gives none."""
     try:
-        text = path.read_text(encoding="utf-8")
+        content = path.read_bytes()
     except FileNotFoundError:
         return []
+    except OSError as error:
+        raise cannot("read", path, error) from error
     events = []
-    lines = text.split("\n")
+    lines = content.split(b"\n")
     for number, line in enumerate(lines, start=1):
         if not line.strip():
             continue
         try:
-            events.append(json.loads(line))
-        except json.JSONDecodeError as error:
+            event = json.loads(line.decode("utf-8"))
+            event["event"]
+        except (ValueError, KeyError, TypeError) as error:
             if number == len(lines):
                 break
-            raise RockbreakError(BAD_INPUT, f"{path}:{number}: not a JSON object: {error}") from error
+            raise RockbreakError(BAD_INPUT, f"{path}:{number}: not a JSON object with `event`: {error}") from error
+        events.append(event)
     return events
 
 

@@ -1,12 +1,11 @@
 """One self-contained report.html: of one run, or of several side by side. Figures also go to figures/*.png."""
-import os
 from pathlib import Path
 
 import jinja2
 import numpy as np
 
 from . import assemblies, curves
-from .run_directory import write_text
+from .run_directory import make_folder, write_text, write_whole
 from .style import data_uri, png_bytes, svg_text
 from .tables import checks, headline, summary_table, warnings
 
@@ -40,12 +39,10 @@ class Gallery:
     def __init__(self, folder, prefix):
         self._folder = folder
         self._prefix = prefix
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
 
     def _save(self, name, png):
-        temporary = self._folder / f"{self._prefix}{name}.tmp"
-        temporary.write_bytes(png)
-        os.replace(temporary, self._folder / f"{self._prefix}{name}.png")
+        write_whole(self._folder / f"{self._prefix}{name}.png", png)
 
     def curve(self, function, runs, title, caption):
         figure = function(runs)

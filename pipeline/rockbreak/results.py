@@ -1,14 +1,14 @@
 """Everything that is read from a run, each thing once and only when somebody asks for it."""
 from functools import cached_property
 
-import h5py
 import numpy as np
 
 from .errors import BAD_INPUT, RockbreakError
 from .fabric import frame_anisotropies
 from .history import read_history
 from .ledger import read_ledger
-from .run_directory import attributes, broken_in
+from .run_directory import broken_in, plain
+from .sealed import open_sealed
 
 
 class Results:
@@ -65,7 +65,7 @@ class Results:
 
     def anisotropies(self, k):
         if k not in self._anisotropies:
-            with h5py.File(self.directory.frame_file(k), "r") as file:
+            with open_sealed(self.directory.frame_file(k)) as file:
                 self._anisotropies[k] = frame_anisotropies(file)
         return self._anisotropies[k]
 
@@ -81,9 +81,9 @@ def frame_table(directory):
     table = []
     for k in numbers:
         path = directory.frame_file(k)
-        root = attributes(path)
         try:
-            with h5py.File(path, "r") as file:
+            with open_sealed(path) as file:
+                root = {key: plain(file.attrs[key]) for key in ("step", "axial_strain", "final")}
                 table.append({"frame": k, "step": int(root["step"]), "axial_strain": float(root["axial_strain"]),
                               "final": bool(root["final"]), "particles": len(file["particles/id"]),
                               "contacts": len(file["contacts/a"]),

@@ -6,11 +6,11 @@ import fcntl
 import os
 from pathlib import Path
 
-import h5py
 import yaml
 
-from .errors import BAD_INPUT, IO_FAILURE, RockbreakError
+from .errors import BAD_INPUT, IO_FAILURE, RockbreakError, cannot
 from .payload_hash import payload_hash, xxh3_128
+from .sealed import open_sealed
 
 DRIVER_FILES = {".lock", "run.jsonl"}  # all that a run leaves which failed before it began
 
@@ -51,7 +51,7 @@ class RunDirectory:
                 case = yaml.safe_load(file)
         except FileNotFoundError:
             raise RockbreakError(BAD_INPUT, f"{self.case_file}: no such file; a run directory has one") from None
-        except yaml.YAMLError as error:
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
             raise RockbreakError(BAD_INPUT, f"{self.case_file}: {error}") from error
         if not isinstance(case, dict):
             raise RockbreakError(BAD_INPUT, f"{self.case_file}: found no mapping of keys")
@@ -78,7 +78,7 @@ class RunDirectory:
         for number in self.split_numbers():
             if k is None or number > k:
                 self.split_file(number).unlink()
-        for folder in ("frames", "splits"):
+        for folder in (".", "frames", "splits", "prepared", "figures"):
             for leftover in (self.path / folder).glob("*.tmp"):
                 leftover.unlink()
 
@@ -105,19 +105,31 @@ def lock_directory(path, program, holders=None):
 
 
 def write_text(path, text):
+    write_whole(path, text.encode("utf-8"))
+
+
+def write_whole(path, content):
     """A file that is either the old one or the new one, whole."""
     temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise cannot("write", path, error) from error
+
+
+def make_folder(path):
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot("create", path, error) from error
 
 
 def attributes(path):
     """Root attributes of an HDF5 file as plain Python values."""
-    try:
-        with h5py.File(path, "r") as file:
-            return {key: plain(value) for key, value in file.attrs.items()}
-    except OSError as error:
-        raise RockbreakError(IO_FAILURE, f"{path}: unreadable: {error}") from error
+    with open_sealed(path) as file:
+        return {key: plain(value) for key, value in file.attrs.items()}
 
 
 def plain(value):
@@ -127,9 +139,9 @@ def plain(value):
 
 
 def is_valid(path):
-    """True if every dataset passes its checksum and the payload has the hash that the file states."""
+    """True if the file has the bytes that were written and the payload has the hash that it states."""
     try:
-        with h5py.File(path, "r") as file:
+        with open_sealed(path) as file:
             return payload_hash(file) == plain(file.attrs.get("payload_hash"))
     except (OSError, RockbreakError, KeyError, ValueError):
         return False
@@ -147,7 +159,7 @@ def broken_in(split_file):
     if not split_file.exists():
         return 0
     try:
-        with h5py.File(split_file, "r") as file:
+        with open_sealed(split_file) as file:
             return len(file["broken/parent"])
     except (OSError, KeyError) as error:
         raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error

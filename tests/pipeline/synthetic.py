@@ -1,11 +1,13 @@
 """Run directories made of thin air: the files of INTERFACES with known numbers in them, for tests of the pipeline."""
 import json
+from contextlib import contextmanager
 
 import h5py
 import numpy as np
 import yaml
 
 from rockbreak.payload_hash import payload_hash
+from rockbreak.sealed import SEAL_BYTES, seal_of
 
 CASE = {
     "seed": 1,
@@ -19,10 +21,21 @@ CASE = {
 
 
 def seal(path):
-    """Adds the payload hash, as the writers of frames and splits do."""
+    """Adds the payload hash and the seal, as the writers of frames and splits do."""
     with h5py.File(path, "a") as file:
         value = file.attrs["payload_hash"] = payload_hash(file)
+    image = path.read_bytes()
+    path.write_bytes(image + seal_of(image))
     return value
+
+
+@contextmanager
+def edited(path):
+    """An open file to change, sealed anew afterwards."""
+    path.write_bytes(path.read_bytes()[:-SEAL_BYTES])
+    with h5py.File(path, "a") as file:
+        yield file
+    seal(path)
 
 
 def contacts_of_known_anisotropy(count, a, a_n, a_t, theta_0=np.pi / 2, theta_n=np.pi / 2, theta_t=np.pi / 2, f0=1e6):

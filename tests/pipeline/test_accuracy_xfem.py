@@ -18,6 +18,7 @@ from rockbreak.accuracy_study import read_study
 from rockbreak.child import executable
 from rockbreak.errors import RockbreakError
 from rockbreak.plan import make_plan
+from synthetic import seal
 
 LAB = REPOSITORY / "configs" / "lab"
 
@@ -101,6 +102,7 @@ def write_field(folder, nodes, triangles, stress, load):
         file.attrs["first_failure_load"] = load
         file["mesh/nodes"], file["mesh/triangles"] = np.array(nodes, dtype=float), np.array(triangles)
         file["stress/element"], file["loads/point"] = np.array(stress, dtype=float), np.array([[0.0, 0.0]])
+    seal(folder / "result.h5")
     run = particle(first_failure_load=load)
     run.out = folder
     return run

@@ -1,5 +1,4 @@
 """Classes of forces, stresses and displacements against states whose answer is known by hand."""
-import h5py
 import numpy as np
 import pytest
 
@@ -105,7 +104,7 @@ def test_held_supports_neither_come_closer_nor_move_apart():
 def test_a_frame_is_counted_as_its_arrays_are(tmp_path):
     run = synthetic.write_run(tmp_path / "r", frames=5, breaks=lambda k: 2)
     path = run / "frames" / "000004.h5"
-    with h5py.File(path, "a") as file:
+    with synthetic.edited(path) as file:
         forces = np.concatenate([np.full(10, 0.5e6), np.full(20, 2e6), np.full(5, 7e6)])
         forces = np.concatenate([forces, np.zeros(len(file["contacts/a"]) - 35)])
         file["contacts/normal_force"][:] = forces

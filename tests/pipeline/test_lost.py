@@ -1,0 +1,95 @@
+"""Nothing is lost, and what is damaged is refused: short parts of what tests/robustness/lost does by the hundred."""
+import sys
+
+import h5py
+import pytest
+
+import synthetic
+from conftest import REPOSITORY
+from rockbreak.command_line import is_concluded
+from rockbreak.errors import IO_FAILURE, RockbreakError
+from rockbreak.ledger import Ledger, read_ledger
+from rockbreak.run_directory import RunDirectory, is_valid, write_text
+from rockbreak.sealed import open_sealed
+
+sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))
+from lost_kills import Campaign  # noqa: E402
+
+FULL_DEVICE = "/dev/full"  # every write to it finds no space
+
+
+def test_killed_at_random_and_resumed_a_run_is_the_uninterrupted_one(tmp_path):
+    campaign = Campaign(tmp_path, 1, ["resident", "oneshot"], report=False, overrides=["shear.axial_strain=0.02"])
+    campaign.uninterrupted()
+    while campaign.kills < 12 and not campaign.faults:
+        campaign.one_run(12)
+    assert campaign.faults == []
+    assert campaign.kills == 12 and campaign.runs >= 1 and len(campaign.counts["phase"]) >= 2
+
+
+@pytest.fixture
+def frame(tmp_path):
+    return synthetic.write_run(tmp_path / "run", frames=2) / "frames" / "000001.h5"
+
+
+@pytest.mark.parametrize("damage, says", [
+    (lambda content: content[:100] + bytes([content[100] ^ 4]) + content[101:], "do not match the checksum"),
+    (lambda content: content[:-1], "cut short"),
+    (lambda content: content[:-24], "cut short"),
+    (lambda content: b"", "cut short"),
+    (lambda content: content[:-3] + bytes(3), "do not match the checksum"),
+], ids=["flipped", "one_byte_short", "without_seal", "empty", "seal_zeroed"])
+def test_a_damaged_file_never_reaches_the_hdf5_library(frame, damage, says, monkeypatch):
+    frame.write_bytes(damage(frame.read_bytes()))
+    monkeypatch.setattr(h5py, "File", lambda *_: pytest.fail("HDF5 was let at it"))
+    with pytest.raises(RockbreakError, match=says) as error:
+        open_sealed(frame)
+    assert str(frame) in str(error.value) and error.value.code == IO_FAILURE
+    assert not is_valid(frame)
+
+
+def test_a_ledger_that_cannot_grow_says_so_and_keeps_its_lines_whole(tmp_path, monkeypatch):
+    path = tmp_path / "run.jsonl"
+    with Ledger(path) as ledger:
+        ledger.write("frame", frame=0)
+
+        class Filling:
+            """Takes five bytes, then is full."""
+            fileno = ledger._file.fileno
+
+            def write(self, data, _room=[5]):
+                taken, _room[0] = _room[0], 0
+                if taken == 0:
+                    raise OSError(28, "No space left on device")
+                return real.write(data[:taken])
+
+            def close(self):
+                real.close()
+        real, ledger._file = ledger._file, Filling()
+        with pytest.raises(RockbreakError, match="run.jsonl: cannot write: No space left on device") as error:
+            ledger.write("frame", frame=1)
+        ledger._file = real
+        ledger.write("end", code=error.value.code)
+    assert [event["event"] for event in read_ledger(path)] == ["frame", "end"]
+    assert read_ledger(path)[-1]["code"] == IO_FAILURE
+
+
+def test_a_text_that_finds_no_space_leaves_the_old_one(tmp_path):
+    path = tmp_path / "summary.json"
+    write_text(path, "old")
+    (tmp_path / "summary.json.tmp").symlink_to(FULL_DEVICE)
+    with pytest.raises(RockbreakError, match="summary.json: cannot write: No space left on device"):
+        write_text(path, "new")
+    assert path.read_text() == "old" and not (tmp_path / "summary.json.tmp").is_symlink()
+
+
+def test_what_was_concluded_is_told_by_the_ledger_not_by_clocks(tmp_path):
+    directory = RunDirectory(synthetic.write_run(tmp_path / "run", frames=2))
+    assert not is_concluded(directory, with_report=True) and not is_concluded(directory, with_report=False)
+    directory.summary_file.write_text("{}")
+    directory.report_file.write_text("")
+    with Ledger(directory.ledger_file) as ledger:
+        ledger.write("report", path="report.html")
+        assert is_concluded(directory, with_report=True) and is_concluded(directory, with_report=False)
+        ledger.write("frame", frame=1)  # made again; its file may well be older than the report
+        assert not is_concluded(directory, with_report=True)
