@@ -154,7 +154,8 @@ bool Analysis::restore_cracks() {
 bool Analysis::solve() {
   state_ = solver_.solve(cracks_);
   if (!state_.solved) refuse("the cracked system is singular: a part of the particle is loose");
-  return state_.solved;
+  if (!state_.settled) refuse("friction on the closed crack faces did not settle");
+  return state_.solved && state_.settled;
 }
 
 /// All cracks that hang together with `crack` by tips that ran into one another, ascending.
@@ -186,7 +187,8 @@ std::vector<int> Analysis::component_of(int crack) const {
 /// enough, and then they stand in the result.
 bool Analysis::breaks_or_chips(int crack, bool& breaks) {
   std::vector<Vec2> mouths;
-  for (const int member : component_of(crack)) {
+  std::vector<int> members = component_of(crack);
+  for (const int member : members) {
     for (int end = 0; end < 2; ++end) {
       if (cracks_[member].tips[end] != TipState::at_boundary) continue;
       mouths.push_back((end == 0 ? cracks_[member].points.front() : cracks_[member].points.back()).position);
@@ -208,6 +210,7 @@ bool Analysis::breaks_or_chips(int crack, bool& breaks) {
       result_.right = std::move(pieces->right);
     }
   }
+  if (breaks) result_.path_cracks = std::move(members);
   return true;
 }
 

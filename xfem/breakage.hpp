@@ -52,6 +52,7 @@ struct BreakageResult {
   FailureMode failure_mode = FailureMode::none;
   std::vector<Crack> cracks;                ///< all cracks after the analysis (also of a broken particle)
   std::optional<std::array<Vec2, 2>> path;  ///< breakage line, body frame, if broken
+  std::vector<int> path_cracks;             ///< indices of the cracks that hang together with the path, ascending
   Polygon left, right;                      ///< fragments in the parent's body frame, if broken
   int growth_steps = 0;
   double unbalance = 0;  ///< IntactModel::unbalance of the loads

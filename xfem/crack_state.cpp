@@ -103,12 +103,15 @@ void append_cracks(common::Split& split, std::int64_t particle, const std::vecto
   }
 }
 
-std::vector<InheritedCrack> inherited_cracks(const std::vector<Crack>& cracks, const std::array<Vec2, 2>& path,
-                                             int side, const Vec2& fragment_centroid, double clearance) {
+std::vector<InheritedCrack> inherited_cracks(const std::vector<Crack>& cracks, const std::vector<int>& path_cracks,
+                                             const std::array<Vec2, 2>& path, int side, const Vec2& fragment_centroid,
+                                             double clearance) {
   const Vec2 along = path[1] - path[0];
   const double length = std::sqrt(along.dot(along));
   std::vector<InheritedCrack> inherited;
-  for (const Crack& crack : cracks) {
+  for (std::size_t k = 0; k < cracks.size(); ++k) {
+    if (std::find(path_cracks.begin(), path_cracks.end(), static_cast<int>(k)) != path_cracks.end()) continue;
+    const Crack& crack = cracks[k];
     InheritedCrack own{{}, crack.tips};
     double nearest = std::numeric_limits<double>::infinity();
     for (const CrackPoint& point : crack.points) {

@@ -30,15 +30,17 @@ std::optional<Crack> crack_on_mesh(const Mesh& mesh, const Crack& crack);
 /// Appends the cracks of one particle to a split; particles must come in ascending order.
 void append_cracks(common::Split& split, std::int64_t particle, const std::vector<Crack>& cracks);
 
-/// Cracks that a fragment inherits: those of the parent that lie wholly on the fragment's side of the breakage line
-/// and nowhere nearer to it than `clearance` [m] (what is nearer belongs to the path itself, or opens into it), as
-/// polylines in the fragment's own frame (origin at its centroid, the parent's angle). `side` is +1 for the left
-/// fragment and -1 for the right one.
+/// Cracks that a fragment inherits: those of the parent that do not hang together with the path (`path_cracks`, indices
+/// into `cracks`: of a path through three cracks the middle one may lie far from the straight line), and that lie
+/// wholly on the fragment's side of the breakage line and nowhere nearer to it than `clearance` [m] (what is nearer
+/// opens into it), as polylines in the fragment's own frame (origin at its centroid, the parent's angle). `side` is +1
+/// for the left fragment and -1 for the right one.
 struct InheritedCrack {
   std::vector<Vec2> polyline;  ///< [m]
   std::array<TipState, 2> tips;
 };
-std::vector<InheritedCrack> inherited_cracks(const std::vector<Crack>& cracks, const std::array<Vec2, 2>& path,
-                                             int side, const Vec2& fragment_centroid, double clearance);
+std::vector<InheritedCrack> inherited_cracks(const std::vector<Crack>& cracks, const std::vector<int>& path_cracks,
+                                             const std::array<Vec2, 2>& path, int side, const Vec2& fragment_centroid,
+                                             double clearance);
 
 }  // namespace xfem

@@ -244,7 +244,8 @@ void FrameSolver::Implementation::record_fragments(const common::Frame& frame, s
     split.fragments.vertex_offset.push_back(static_cast<std::int64_t>(split.fragments.vertices.size()));
 
     const Vec2 origin = common::centroid(outline);
-    const std::vector<InheritedCrack> inherited = inherited_cracks(result.cracks, path, side, origin, clearance);
+    const std::vector<InheritedCrack> inherited =
+        inherited_cracks(result.cracks, result.path_cracks, path, side, origin, clearance);
     if (inherited.empty()) continue;
     Polygon own = outline;
     for (Vec2& vertex : own) vertex -= origin;

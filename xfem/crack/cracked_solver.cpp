@@ -174,6 +174,7 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest
   state.solved = contact.has_value();
   if (contact) {
     state.q = std::move(contact->q);
+    state.settled = contact->settled;
     state.closed_segments = contact->closed_segments;
     state.face_shear = std::move(contact->shear);
   }

@@ -19,9 +19,10 @@
 namespace xfem {
 
 struct CrackedState {
-  bool solved = true;  ///< false: the system is singular, a part of the particle is loose
-  Eigen::VectorXd u;   ///< nodal displacement (2 n) [m]
-  Eigen::VectorXd q;   ///< enriched dofs, 2 per function [m]
+  bool solved = true;   ///< false: the system is singular, a part of the particle is loose
+  bool settled = true;  ///< false: friction on the crack faces found no state (solved, but not to be used)
+  Eigen::VectorXd u;    ///< nodal displacement (2 n) [m]
+  Eigen::VectorXd q;    ///< enriched dofs, 2 per function [m]
   Enrichment enrichment;
   std::vector<Stress> stress;  ///< per element, the area average over its parts, compression positive [Pa]
   int closed_segments = 0;     ///< crack segments in contact

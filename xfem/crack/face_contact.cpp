@@ -5,13 +5,15 @@
 #include <limits>
 #include <utility>
 
+#include "xfem/crack/friction_path.hpp"
+
 namespace xfem {
 namespace {
 
 /// Far more than the line search needs: what would still change then are openings of rounding size.
 constexpr int kContactIterations = 50;
-/// The bounds on the shear settle to this share of the largest, within so many steps; a step is at least this share of
-/// the change wanted.
+/// The bounds on the shear settle to this share of the largest, within so many steps, or else on the friction path; a
+/// step is at least this share of the change wanted.
 constexpr int kFrictionIterations = 60;
 constexpr double kFrictionTolerance = 1e-9;
 constexpr double kSmallestShare = 1.0 / 16;
@@ -89,6 +91,11 @@ double least_energy(const DenseSymmetric& schur, const Eigen::VectorXd& right, c
   };
   return root_between(bends, derivative);
 }
+
+/// By how much the bounds on the shear would change, and the largest of them [Pa].
+struct Change {
+  double largest_change, largest;
+};
 
 /// What a face does under a bound on its shear.
 enum class Shear { none, sticks, forward, backward };
@@ -233,9 +240,8 @@ std::optional<FaceContact> solve_frictional_contact(const DenseSymmetric& schur,
   contact->shear.assign(faces.size(), 0.0);
   if (contact->closed_segments == 0) return contact;
   std::vector<double> bounds(faces.size(), 0.0);
-  double previous = std::numeric_limits<double>::infinity();
-  double share = 1;
-  for (int iteration = 0; iteration < kFrictionIterations; ++iteration) {
+  // The bounds go this share of the way to what the pressures ask for.
+  const auto adjust_bounds = [&](double share) {
     double change = 0;
     double largest = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -244,19 +250,38 @@ std::optional<FaceContact> solve_frictional_contact(const DenseSymmetric& schur,
       largest = std::max(largest, wanted);
       bounds[i] += share * (wanted - bounds[i]);
     }
-    if (change <= kFrictionTolerance * largest) break;
-    if (change >= previous) share = std::max(share / 2, kSmallestShare);
-    previous = change;
+    return Change{change, largest};
+  };
+  const auto solve_for_bounds = [&] {
     const TrescaContact tresca(schur, right, faces, penalty, bounds);
     std::optional<Eigen::VectorXd> q = tresca.solve(contact->q);
-    if (!q) return std::nullopt;
+    if (!q) return false;
     contact->q = std::move(*q);
     contact->closed_segments = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
       contact->closed_segments += opening(faces[i], contact->q) < 0;
       contact->shear[i] = tresca.shear(i, slip(faces[i], contact->q));
     }
+    return true;
+  };
+  double previous = std::numeric_limits<double>::infinity();
+  double share = 1;
+  for (int iteration = 0; iteration < kFrictionIterations; ++iteration) {
+    const auto [change, largest] = adjust_bounds(share);
+    if (change <= kFrictionTolerance * largest) return contact;
+    if (change >= previous) share = std::max(share / 2, kSmallestShare);
+    previous = change;
+    if (!solve_for_bounds()) return std::nullopt;
   }
+  // The path's bounds; solving for them once more must leave them where they are.
+  contact->settled = false;
+  const std::optional<FrictionPath> path = follow_friction_path(schur, right, faces, penalty, friction);
+  if (!path) return contact;
+  for (std::size_t i = 0; i < faces.size(); ++i) bounds[i] = friction * path->pressure[i];
+  contact->q = path->q;
+  if (!solve_for_bounds()) return std::nullopt;
+  const auto [change, largest] = adjust_bounds(0);
+  contact->settled = change <= kFrictionTolerance * largest;
   return contact;
 }
 

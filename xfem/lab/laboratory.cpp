@@ -88,7 +88,8 @@ std::vector<Crack> given_cracks(const Mesh& mesh, PolygonView outline, const com
   return cracks;
 }
 
-/// Factor of the growing loads at which a tip of the given cracks first advances; infinite if none does.
+/// Factor of the growing loads at which a tip of the given cracks first advances; infinite if none does. Throws
+/// bad_input if the held loads alone drive one: then there is no load at which the test would start.
 double growth_factor(const ParticleModel& model, const std::vector<Load>& held, const std::vector<Load>& growing,
                      const std::vector<Crack>& cracks, const BreakageParameters& parameters) {
   if (cracks.empty()) return kInfinity;
@@ -97,6 +98,10 @@ double growth_factor(const ParticleModel& model, const std::vector<Load>& held, 
   const auto grows = [&](double factor) {
     return first_growth(model, total(held, factor, growing), cracks, parameters) <= 1;
   };
+  if (grows(0))
+    throw common::bad_input(
+        "specimen.cracks: found a crack that the held load alone drives, expected cracks that hold until the load "
+        "grows");
   double high = 1e-3;
   for (int i = 0; i < 40 && !grows(high); ++i) high *= 2;
   if (!grows(high)) return kInfinity;

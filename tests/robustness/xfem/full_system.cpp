@@ -85,20 +85,27 @@ Residual residual_of(const IntactModel& model, std::span<const Load> loads, doub
   for_each_part(model, enrichment,
                 [&](double area, std::span<const Shape> shapes) { add_part(rows, d, area, shapes, x); });
   const double penalty = kFacePenalty * model.constants().young_modulus / mesh.size;
-  for (const FaceSegment& face : face_segments(mesh, model.gradients(), enrichment)) {
-    const double overlap = std::min(0.0, opening(face, state.q));
-    if (overlap == 0) continue;
+  const std::vector<FaceSegment> faces = face_segments(mesh, model.gradients(), enrichment);
+  /// Adds a traction on a face against its opening or slip, and the stiffness that it comes from.
+  const auto add_traction = [&](const FaceSegment& face, const Vec2& direction, double traction) {
     double terms = 0;
     for (const auto& [function, weight] : face.jumps) {
-      terms += std::abs(weight) * state.q.segment<2>(2 * function).cwiseAbs().dot(face.normal.cwiseAbs());
+      terms += std::abs(weight) * state.q.segment<2>(2 * function).cwiseAbs().dot(direction.cwiseAbs());
     }
     for (const auto& [function, weight] : face.jumps) {
-      const Vec2 stiffness = penalty * face.length * weight * face.normal;
+      const Vec2 lever = face.length * weight * direction;
       const Eigen::Index row = standard + 2 * function;
-      rows.unbalanced.segment<2>(row) += overlap * stiffness;
-      rows.terms.segment<2>(row) += terms * stiffness.cwiseAbs();
-      rows.diagonal.segment<2>(row) += weight * stiffness.cwiseProduct(face.normal);
+      rows.unbalanced.segment<2>(row) += traction * lever;
+      rows.terms.segment<2>(row) += penalty * terms * lever.cwiseAbs();
+      rows.diagonal.segment<2>(row) += penalty * weight * lever.cwiseProduct(direction);
     }
+  };
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const double overlap = std::min(0.0, opening(faces[i], state.q));
+    if (overlap == 0) continue;
+    add_traction(faces[i], faces[i].normal, penalty * overlap);
+    if (state.face_shear.empty()) continue;
+    add_traction(faces[i], Vec2(faces[i].normal.y(), -faces[i].normal.x()), state.face_shear[i]);
   }
 
   Residual residual;

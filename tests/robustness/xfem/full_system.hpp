@@ -35,7 +35,8 @@ struct Residual {
   bool is_finite = true;
 };
 
-/// What a state leaves unbalanced under the loads, closed faces and held dofs (whose reactions vanish) included.
+/// What a state leaves unbalanced under the loads, closed faces (with their friction) and held dofs
+/// (whose reactions vanish) included.
 Residual residual_of(const xfem::IntactModel& model, std::span<const xfem::Load> loads, double patch,
                      const common::Polygon& outline, const xfem::CrackedState& state);
 

@@ -4,6 +4,7 @@
 
 #include "tests/unit/xfem/outlines.hpp"
 #include "xfem/breakage.hpp"
+#include "xfem/crack_state.hpp"
 
 using namespace xfem;
 using common::ParticleStatus;
@@ -201,6 +202,31 @@ TEST_CASE("Two cracks that run into one another count as one path") {
   CHECK(std::abs(result.path->at(0).y()) == Approx(0.25));
   CHECK(std::abs(result.path->at(0).x()) < 0.06);
   CHECK(std::abs(result.path->at(1).x()) < 0.06);
+}
+
+TEST_CASE(
+    "Of a path through three cracks the middle one belongs to the path, far as it may lie from the breakage line") {
+  const ParticleModel model = block(300);
+  const Mesh& mesh = model.elastic.mesh();
+  const auto crack = [&](std::vector<Vec2> line, TipState first, TipState last) {
+    return place_polyline(mesh, line, {first, last});
+  };
+  // Pulled sideways, the tips of the first and the last run into the arms of the middle one.
+  const std::vector<Crack> cracks{crack({{-0.02, -0.25}, {0.1, -0.1}}, TipState::at_boundary, TipState::active),
+                                  crack({{0.07, -0.05}, {0.15, 0}, {0.07, 0.05}}, TipState::active, TipState::active),
+                                  crack({{0.1, 0.1}, {-0.02, 0.25}}, TipState::active, TipState::at_boundary)};
+  const BreakageResult result = analyse(model, horizontal_stress(mesh, -8e6), cracks, without_floor());
+  REQUIRE(result.status == ParticleStatus::broken);
+  REQUIRE(std::abs(result.path->at(0).x() + 0.02) < 0.03);
+  REQUIRE(std::abs(result.path->at(1).x() + 0.02) < 0.03);
+  CHECK(result.path_cracks == std::vector<int>{0, 1, 2});
+  // It would pass for a crack of its own by its distance alone.
+  for (const int side : {1, -1}) {
+    const auto own = inherited_cracks(result.cracks, result.path_cracks, *result.path, side, {0, 0}, mesh.size);
+    CHECK(own.empty());
+  }
+  const int side = result.path->at(0).y() < 0 ? -1 : 1;  // the middle crack's
+  CHECK(inherited_cracks(result.cracks, {}, *result.path, side, {0, 0}, mesh.size).size() == 1);
 }
 
 TEST_CASE("What cannot be analysed is refused with its reason") {

@@ -74,13 +74,15 @@ TEST_CASE("a fragment inherits the cracks on its side of the path and clear of i
       crack({{0, -1}, {-0.2, 0}, {0, 1}}),        // the path itself, bulging
       crack({{0.05, 0}, {0.4, 0}}),               // opens into the path
   };
-  const auto left = xfem::inherited_cracks(cracks, path, +1, {-0.5, 0.1}, 0.1);
+  const auto left = xfem::inherited_cracks(cracks, {3}, path, +1, {-0.5, 0.1}, 0.1);
   REQUIRE(left.size() == 1);
   CHECK((left[0].polyline[1] - Vec2{0.1, 0.1}).norm() < 1e-15);
-  const auto right = xfem::inherited_cracks(cracks, path, -1, {0.5, 0.1}, 0.1);
+  const auto right = xfem::inherited_cracks(cracks, {3}, path, -1, {0.5, 0.1}, 0.1);
   REQUIRE(right.size() == 1);
   CHECK(right[0].polyline.size() == 3);
   CHECK((right[0].polyline[0] - Vec2{-0.2, -0.1}).norm() < 1e-15);
+  // What the path went through is gone, however far from the straight line it lies.
+  CHECK(xfem::inherited_cracks(cracks, {1, 3}, path, -1, {0.5, 0.1}, 0.1).empty());
 }
 
 TEST_CASE("a previous split that cannot precede the frame is refused with the reason") {

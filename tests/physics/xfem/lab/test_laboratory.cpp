@@ -148,6 +148,29 @@ TEST_CASE("laboratory tests that make no sense are refused") {
   CHECK_THROWS_WITH(xfem::multi_contact_test(test), Catch::Contains("out of balance"));
 }
 
+TEST_CASE("a crack that the held load alone drives is refused, one that holds until the load grows is not") {
+  // The held load of a confined test is equal on all sides and closes cracks: here it is a pull, which intact rock
+  // bears.
+  common::LabTest test = test_of(LabTestKind::tension, 300);
+  test.specimen.cracks = {{common::Vec2(-0.08, 0), common::Vec2(0.08, 0)}};
+  xfem::LabSetup setup = xfem::lab_setup(test);
+  const double cracked = xfem::run(setup, test).first_failure_load;
+  const auto pull = setup.loads;
+  const auto held = [&](double share) {
+    setup.held = [&pull, share](const xfem::IntactModel& model) {
+      std::vector<xfem::Load> loads = pull(model);
+      for (xfem::Load& load : loads) load.force *= share;
+      return loads;
+    };
+    setup.held_load = share * setup.unit_load;
+    return xfem::run(setup, test);
+  };
+  const double strength = cracked / setup.unit_load;
+  REQUIRE(strength < 0.8);
+  CHECK(held(0.95 * strength).first_failure_load == Approx(cracked).epsilon(1e-6));
+  CHECK_THROWS_WITH(held(1.05 * strength), Catch::Contains("found a crack that the held load alone drives"));
+}
+
 TEST_CASE(
     "cracks that cross the specimen, miss it or meet another are refused, others leave no theory of the intact one") {
   common::LabTest test = test_of(LabTestKind::tension, 300);
