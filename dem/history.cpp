@@ -92,7 +92,7 @@ double energy_residual(const Engine& engine, const Control& control) {
 }
 
 void require_sound(const common::Scene& scene, const std::vector<common::Column>& history) {
-  constexpr double kRattling = 0.1;
+  constexpr double kRattling = 0.03;
   constexpr double kSlow = 0.01;
   constexpr double kResidual = 0.05;
   const auto column = [&](const char* name) -> const std::vector<double>& {
@@ -104,9 +104,9 @@ void require_sound(const common::Scene& scene, const std::vector<common::Column>
   };
   const auto stop = [&](const std::string& found) {
     return common::numerical_failure(fmt::format(
-        "axial strain {:.5f}: {}; the time step may be too large (time_step.safety is {}) or the sample far "
-        "from rest under its pressure",
-        column("axial_strain").back(), found, scene.time_step.safety));
+        "axial strain {:.5f}: {}; the time step may be too large (time_step.safety is {}), the sample stiffer "
+        "than the servo takes it for (servo.modulus is {:.3g} Pa) or far from rest under its pressure",
+        column("axial_strain").back(), found, scene.time_step.safety, scene.servo.modulus));
   };
   if (scene.effects.local_damping) {
     const std::vector<double>& unbalanced = column("unbalanced_force");

@@ -9,6 +9,9 @@
 // at once), so that the gain may exceed 1 / (K tau); twice these gains were still stable in samples three to four times
 // stiffer than K = 1e8 Pa. A dense sample dilates: at its peak it expands sideways at up to twice the axial rate, which
 // the limit of the rate must allow, or the stress is lost.
+//
+// The stress is measured every `servo_interval` steps. Between two measurements the error of a sample of modulus M
+// changes by kp M interval of itself: swings that do not die out beyond 2, which large steps in a small sample come to.
 #pragma once
 
 #include "common/config/scene.hpp"
@@ -19,6 +22,7 @@ struct ServoGains {
   double proportional;  ///< kp [1/(Pa s)]
   double integral;      ///< ki [1/(Pa s^2)]
   double max_rate;      ///< [1/s]
+  double wave_time;     ///< tau [s]
 };
 
 /// One controlled direction.
@@ -36,5 +40,9 @@ struct Servo {
 /// of 0.1 pressure / (K tau) and three times the drive's.
 ServoGains servo_gains(const common::ServoOptions& options, double pressure, double radius, double density,
                        double drive_rate);
+
+/// Steps of `time_step` [s] between two measurements: ten, or so many fewer that they take at most a tenth of tau, with
+/// which the error of a sample four times as stiff as K changes at most by itself.
+int servo_interval(const ServoGains& gains, double time_step);
 
 }  // namespace dem

@@ -1,8 +1,11 @@
 #include "dem/stages/control.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.hpp"
 #include "dem/boundary/ring.hpp"
 #include "dem/checkpoint.hpp"
 #include "dem/measures.hpp"
@@ -150,6 +153,17 @@ void renew_ring(Engine& engine) {
     engine.restart();
   }
   state.energy.boundary_work += engine.kinetic_energy() + elastic_energy(state, engine.constants()) - energy_before;
+}
+
+void require_interior(const State& state) {
+  const std::vector<std::uint8_t>& boundary = state.particles.boundary;
+  const auto driven = static_cast<std::size_t>(std::count(boundary.begin(), boundary.end(), std::uint8_t{1}));
+  const std::size_t rim = std::max(driven, state.ring.size());
+  if (state.ring.size() >= 3 && rim < boundary.size()) return;
+  throw common::bad_input(fmt::format(
+      "assembly.particles: found {}, of which {} lie on the boundary; expected a ring of at least three and "
+      "particles inside it",
+      boundary.size(), rim));
 }
 
 ServoGains sample_gains(const common::Scene& scene, const State& state, double pressure) {

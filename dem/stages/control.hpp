@@ -49,6 +49,10 @@ void renew_ring(Engine& engine);
 /// Ring of the present centres without setting any flag (loose assemblies).
 void outline_ring(Engine& engine);
 
+/// Throws bad_input unless the state has a boundary ring with particles inside: without them no stress and no void
+/// ratio exist.
+void require_interior(const State& state);
+
 /// Gains of the present sample.
 ServoGains sample_gains(const common::Scene& scene, const State& state, double pressure);
 

@@ -17,7 +17,6 @@ constexpr double kPressureReached = 0.01;  // relative error of both stresses
 constexpr double kPressureFollowed = 0.03;
 constexpr double kPressureHeld = 0.001;
 constexpr int kRingInterval = 50;
-constexpr int kServoInterval = 10;
 constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves the friction
 constexpr double kFirstTry = 0.0005;       // above the target: a sample gets hardly denser while it comes to rest
 constexpr double kRingFixed = 0.012;       // above the target: the ring stays as it is; one particle is 0.005 of 300
@@ -88,6 +87,7 @@ void Preparation::step() {
     } else if (control_.phase < Phase::densification || target_void_ratio_error() > kRingFixed) {
       renew_ring(engine_);
     }
+    require_interior(engine_.clock());
     control_.steps_to_ring = kRingInterval - 1;
   }
   // The particles inside are carried along: a boundary that pushed alone would densify the layer next to it first, and
@@ -97,13 +97,15 @@ void Preparation::step() {
   engine_.scale_positions(Vec2::Ones() - Vec2(rate.xx + compaction, rate.yy + compaction) * engine_.clock().time_step);
   engine_.step(rate);
   if (control_.steps_to_servo-- <= 0) {
-    steer();
-    control_.steps_to_servo = kServoInterval - 1;
+    const int interval = servo_interval(sample_gains(scene_, engine_.state(), scene_.preparation.confining_pressure),
+                                        engine_.clock().time_step);
+    steer(interval * engine_.clock().time_step);
+    control_.steps_to_servo = interval - 1;
   }
 }
 
 // Measures the sample, moves the servos, and decides whether the phase has done its work.
-void Preparation::steer() {
+void Preparation::steer(double elapsed) {
   const State& state = engine_.state();
   const double p = scene_.preparation.confining_pressure;
   const auto stress = mean_stress(state, ring_area(state));
@@ -126,7 +128,6 @@ void Preparation::steer() {
     return;
   }
 
-  const double elapsed = kServoInterval * state.time_step;
   const ServoGains gains = sample_gains(scene_, state, p);
   control_.servo_x.update(gains, p, stress[0], elapsed);
   control_.servo_y.update(gains, p, stress[1], elapsed);

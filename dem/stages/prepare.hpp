@@ -25,7 +25,7 @@ class Preparation {
 
  private:
   void enter(Phase phase);
-  void steer();
+  void steer(double elapsed);
   double target_void_ratio_error() const;
 
   const common::Scene& scene_;

@@ -9,7 +9,6 @@ namespace dem {
 namespace {
 
 constexpr int kRingInterval = 500;
-constexpr int kServoInterval = 10;
 constexpr double kStrainRounding = 1e-12;
 
 }  // namespace
@@ -19,6 +18,7 @@ Shear::Shear(const common::Scene& scene, Engine& engine, Control& control)
 
 void Shear::begin(Engine& engine, Control& control) {
   State& state = engine.edit();
+  require_interior(state);
   state.step = 0;
   state.time = 0;
   state.energy = {};
@@ -54,8 +54,10 @@ void Shear::step() {
     const State& state = engine_.state();
     const double p = scene_.preparation.confining_pressure;
     const auto stress = mean_stress(state, ring_area(state));
-    control_.servo_x.update(sample_gains(scene_, state, p), p, stress[0], kServoInterval * state.time_step);
-    control_.steps_to_servo = kServoInterval - 1;
+    const ServoGains gains = sample_gains(scene_, state, p);
+    const int interval = servo_interval(gains, state.time_step);
+    control_.servo_x.update(gains, p, stress[0], interval * state.time_step);
+    control_.steps_to_servo = interval - 1;
   }
   const StrainRate rate{control_.servo_x.rate, axial_rate()};
   control_.stretch_x *= 1 - rate.xx * engine_.clock().time_step;

@@ -18,6 +18,7 @@ common::Scene small_scene() {
   common::Scene scene;
   scene.effects.friction = true;
   scene.effects.local_damping = true;
+  scene.seed = 2;  // in which some contacts slide at rest
   scene.assembly.particles = 30;
   scene.preparation.void_ratio = 0.9;  // met at once
   scene.preparation.unbalanced_force = 0.02;

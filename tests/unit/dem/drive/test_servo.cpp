@@ -53,3 +53,24 @@ TEST_CASE("at its limit the servo's integral rests, so that it lets go at once")
   servo.update(gains, kPressure, 2 * kPressure, 1e-3);
   CHECK(servo.rate < 0);
 }
+
+TEST_CASE(
+    "however large the step, the stress is measured often enough for a sample four times as stiff as the servo's") {
+  for (const double radius : {0.5, 2.0, 8.0}) {
+    for (const double step : {1e-5, 1e-4, 4e-4}) {
+      const auto gains = dem::servo_gains({}, kPressure, radius, kDensity, 0.02);
+      const int interval = dem::servo_interval(gains, step);
+      const double dt = interval * step;
+      if (interval > 1) CHECK(dt <= 0.1 * gains.wave_time);
+      if (interval < 10) CHECK(dt + step > 0.1 * gains.wave_time);
+      if (step > 0.1 * gains.wave_time) continue;  // one step is the least
+      dem::Servo servo;
+      double stress = 0.999 * kPressure;
+      for (double time = 0; time < 20 * gains.wave_time; time += dt) {
+        servo.update(gains, kPressure, stress, dt);
+        stress += 4e8 * servo.rate * dt;
+      }
+      CHECK(stress == Approx(kPressure).epsilon(1e-5));
+    }
+  }
+}

@@ -92,3 +92,22 @@ TEST_CASE("a particle that leaves the ring is let go unless it would be pressed 
     CHECK(dem::void_ratios(engine.state()).e4 == Approx(dem::ring_area(engine.state()) / inside(engine.state()) - 1));
   }
 }
+
+TEST_CASE("a state without a boundary ring, or with nothing inside it, is refused") {
+  const auto assembly = [](const std::vector<Vec2>& places) {
+    dem::State state;
+    for (const Vec2& at : places) bodies::add(state, bodies::hexagon(0.2), at, 0.0);
+    dem::Engine engine(common::Scene{}, state);
+    dem::outline_ring(engine);
+    return engine.state();
+  };
+  const std::vector<Vec2> around{{0.4, 0}, {0, 0.4}, {-0.4, 0}, {0, -0.4}};
+  std::vector<Vec2> filled = around;
+  filled.push_back({0.01, 0.02});
+  CHECK_NOTHROW(dem::require_interior(assembly(filled)));
+  CHECK_THROWS_WITH(dem::require_interior(assembly(around)), Catch::Matchers::Contains("found 4, of which 4 lie on"));
+  CHECK_THROWS_WITH(dem::require_interior(assembly({{0, 0}, {0.4, 0}})), Catch::Matchers::Contains("found 2"));
+  dem::State driven = assembly(filled);
+  driven.particles.boundary.assign(5, 1);
+  CHECK_THROWS_WITH(dem::require_interior(driven), Catch::Matchers::Contains("found 5, of which 5 lie on"));
+}
