@@ -15,19 +15,23 @@ struct NamedEffect {
   const char* name;
   bool Effects::*member;
   UsedBy used_by;
-  bool of_specimen = false;  ///< acts on one particle alone
+  std::vector<std::string> keys;  ///< keys and sections that mean nothing without it
+  bool of_specimen = false;       ///< acts on one particle alone
 };
-constexpr NamedEffect kEffects[] = {
-    {"friction", &Effects::friction, UsedBy::dem},
-    {"local_damping", &Effects::local_damping, UsedBy::dem},
-    {"contact_damping", &Effects::contact_damping, UsedBy::dem},
-    {"rolling_resistance", &Effects::rolling_resistance, UsedBy::dem},
-    {"gravity", &Effects::gravity, UsedBy::dem},
-    {"mass_scaling", &Effects::mass_scaling, UsedBy::dem},
-    {"energy_ledger", &Effects::energy_ledger, UsedBy::dem},
-    {"breakage", &Effects::breakage, UsedBy::both},
-    {"toughness", &Effects::toughness, UsedBy::xfem, true},
-    {"face_friction", &Effects::face_friction, UsedBy::xfem, true},
+const std::vector<NamedEffect> kEffects{
+    {"friction",
+     &Effects::friction,
+     UsedBy::dem,
+     {"contact.friction", "contact.tangential_stiffness", "preparation.initial_friction"}},
+    {"local_damping", &Effects::local_damping, UsedBy::dem, {"damping.local"}},
+    {"contact_damping", &Effects::contact_damping, UsedBy::dem, {"damping.contact"}},
+    {"rolling_resistance", &Effects::rolling_resistance, UsedBy::dem, {"contact.rolling_friction"}},
+    {"gravity", &Effects::gravity, UsedBy::dem, {"gravity"}},
+    {"mass_scaling", &Effects::mass_scaling, UsedBy::dem, {"mass_scaling"}},
+    {"energy_ledger", &Effects::energy_ledger, UsedBy::dem, {}},
+    {"breakage", &Effects::breakage, UsedBy::both, {"breakage"}},
+    {"toughness", &Effects::toughness, UsedBy::xfem, {"material.fracture_toughness"}, true},
+    {"face_friction", &Effects::face_friction, UsedBy::xfem, {"breakage.face_friction"}, true},
 };
 
 std::vector<std::string> effect_names(EffectsOf owner) {
@@ -75,6 +79,10 @@ std::string print_effects(const Effects& effects, UsedBy executable) {
 }  // namespace
 
 void bind_effects(Specification& keys, Effects& effects, EffectsOf owner) {
+  for (const NamedEffect& effect : kEffects) {
+    if (owner == EffectsOf::specimen && !effect.of_specimen) continue;
+    for (const std::string& key : effect.keys) keys.only_with(effects.*effect.member, key);
+  }
   const std::string expected = "a list of " + join(effect_names(owner));
   keys.custom(
       {"effects", "-", "what exists in the run; what is not named costs nothing", expected, UsedBy::both},

@@ -335,10 +335,24 @@ std::string Specification::to_yaml(const std::string& title) const {
   return text;
 }
 
+void Specification::only_with(const bool& effect, const std::string& path) {
+  effects_[path] = &effect;
+}
+
+bool Specification::has_effect(const std::string& path) const {
+  for (std::size_t end = path.size(); end != std::string::npos; end = end == 0 ? end : path.rfind('.', end - 1)) {
+    const auto effect = effects_.find(path.substr(0, end));
+    if (effect != effects_.end() && !*effect->second) return false;
+    if (end == 0) break;
+  }
+  return true;
+}
+
 std::string Specification::hash(UsedBy executable) const {
   std::string text;
   for (const Binding& binding : bindings_) {
     if (binding.key.used_by != executable && binding.key.used_by != UsedBy::both) continue;
+    if (!has_effect(binding.key.path)) continue;
     text += binding.key.path + ": " + binding.print(executable) + '\n';
   }
   return hash_hex(std::as_bytes(std::span(text)));

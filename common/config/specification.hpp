@@ -81,6 +81,9 @@ class Specification {
   /// working directory). The keys that stand beside it go before the file's, wherever they stand; it prints as "" since
   /// they are all resolved.
   void section_file(const std::string& path, const std::filesystem::path& folder, const std::string& description);
+  /// The key, or all keys of the section, mean something only while `effect` is true: the hash leaves them out
+  /// otherwise.
+  void only_with(const bool& effect, const std::string& path);
   /// A section that may be given as something else than a map: `expand` turns that into the map that it stands for.
   void shorthand(const std::string& section, std::function<Value(const Value&)> expand);
 
@@ -102,7 +105,7 @@ class Specification {
   std::vector<Key> keys() const;
   /// `title` lines, then every key with its value, unit and description.
   std::string to_yaml(const std::string& title) const;
-  /// Hex XXH3-128 over the `path: value` lines of the keys that the executable uses.
+  /// Hex XXH3-128 over the `path: value` lines of the keys that the executable uses and whose effect exists.
   std::string hash(UsedBy executable) const;
 
  private:
@@ -115,11 +118,13 @@ class Specification {
   void walk(const Value& value, const std::string& path);
   void walk_file(const Value& value, const std::string& path);
   const Binding* find(const std::string& path) const;
+  bool has_effect(const std::string& path) const;
   std::vector<std::string> names_in(const std::string& section) const;
   std::string unknown_key(const std::string& name, const std::string& section) const;
 
   std::vector<Binding> bindings_;
   std::map<std::string, std::function<Value(const Value&)>> shorthands_;
+  std::map<std::string, const bool*> effects_;                  ///< key or section to the effect that it belongs to
   std::map<std::string, std::filesystem::path> section_files_;  ///< path to folder
   bool inside_file_ = false;                                    ///< of a section
   std::map<std::string, std::string> given_;                    ///< path to place

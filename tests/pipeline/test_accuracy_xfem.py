@@ -52,6 +52,28 @@ def test_the_disc_s_field_is_in_equilibrium_and_carries_the_load():
     assert abs(by_x[0] + by_y[2]) < 1e-6 * abs(by_x[0]) and abs(by_x[2] + by_y[1]) < 1e-6 * abs(by_y[1])
 
 
+def test_under_arcs_the_disc_s_centre_has_the_stress_of_its_harmonics():
+    """Mean and second harmonic of the normal traction reach the centre (xfem/lab/brazilian.cpp)."""
+    for arc in (0.02, 0.1, 0.25):
+        a = arc / 0.5
+        second, mean = (math.sin(a) + math.sin(3 * a) / 3) / a, math.sin(a) / a
+        stress = errors.disc_stress(np.zeros((1, 2)), 0.25, arc)[0] * math.pi * 0.25
+        assert stress == pytest.approx([mean - second, second + mean, 0.0], abs=1e-12)
+    near_the_top = np.array([[0.03, 0.2]])
+    assert errors.disc_stress(near_the_top, 0.25, 1e-6) == pytest.approx(errors.disc_stress(near_the_top, 0.25), rel=1e-9)
+
+
+def test_under_arcs_the_disc_s_rim_is_free_beside_them_and_carries_the_load():
+    angle = np.radians([0, 20, 50, 110, 180, 250, 310])
+    normal = np.column_stack([np.cos(angle), np.sin(angle)])
+    xx, yy, xy = errors.disc_stress(0.3 * normal, 0.3, 0.09).T
+    traction = np.column_stack([xx * normal[:, 0] + xy * normal[:, 1], xy * normal[:, 0] + yy * normal[:, 1]])
+    assert np.abs(traction).max() < 1e-12 / (math.pi * 0.3), "of the mean tension"
+    x = np.linspace(-0.25, 0.25, 20001)
+    stress = errors.disc_stress(np.column_stack([x, np.zeros_like(x)]), 0.25, 0.1)
+    assert np.trapz(stress[:, 1], x) == pytest.approx(1.0, rel=1e-6)
+
+
 # -- errors
 
 def particle(**changes):
@@ -117,6 +139,21 @@ def test_fields_are_compared_per_unit_load_where_the_coarse_one_has_its_elements
     assert errors.stress_field(coarse, fine) == pytest.approx(0.0)
     other = write_field(tmp_path / "other", square, [[0, 1, 2], [0, 2, 3]], [[1.2, 0, 0], [1, 0, 2]], load=1.0)
     assert errors.stress_field(other, fine) == pytest.approx(0.2 / math.sqrt(1 + 1 + 8))
+    other.case["specimen"] = {"cracks": [[0.0, -0.1, 0.0, 0.1]]}
+    assert errors.stress_field(other, fine) is None, "the file holds the field without the crack"
+
+
+def test_a_disc_under_arcs_is_compared_with_the_field_of_arcs(tmp_path):
+    command = [executable("xfem"), "lab", LAB / "brazilian.yaml", "--set", "mesh.nodes=1200", "--set",
+               "loading.largest=1", "--set", "loading.patch=0.2", "--out", tmp_path / "arc"]
+    subprocess.run([str(word) for word in command], check=True, capture_output=True)
+    arc = SimpleNamespace(out=tmp_path / "arc", case=yaml.safe_load((tmp_path / "arc/case.yaml").read_text()),
+                          summary=json.loads((tmp_path / "arc/summary.json").read_text()))
+    error = errors.stress_field(arc, None)
+    assert error < 0.06  # as with point loads on this mesh
+    arc.case["loading"]["patch"] = 0.0
+    errors.field_of.cache_clear()
+    assert errors.stress_field(arc, None) > 1.4 * error, "the field of point loads is another one"
 
 
 # -- the file

@@ -250,21 +250,37 @@ assert all(type(c) is float for o in x['assembly']['shapes']['outlines'] for p i
   }
 }
 
-TEST_CASE("Each key changes exactly the configuration hashes of the executables that use it") {
+TEST_CASE(
+    "Each key changes exactly the configuration hashes of the executables that use it, and only with its effect") {
   const scratch::Folder folder;
   const std::map<std::string, Change> table = changes(folder);
-  const std::string base = "contact: {law: mean_depth}\n";
+  const std::string every =
+      "friction, local_damping, contact_damping, rolling_resistance, gravity, mass_scaling, energy_ledger, breakage";
+  const std::string specimen = ", toughness, face_friction";
+  int of_effects = 0;
   for (const Key& key : scene_keys()) {
     INFO(key.path);
     REQUIRE(table.count(key.path) == 1);
-    const Scene before = scene_of(folder, base, table.at(key.path).common);
-    const Scene after = scene_of(folder, base, table.at(key.path).changed);
-    CHECK(to_yaml(before) != to_yaml(after));
-    const bool dem = config_hash(before, UsedBy::dem) != config_hash(after, UsedBy::dem);
-    const bool xfem = config_hash(before, UsedBy::xfem) != config_hash(after, UsedBy::xfem);
-    CHECK(dem == (key.used_by == UsedBy::dem || key.used_by == UsedBy::both));
-    CHECK(xfem == (key.used_by == UsedBy::xfem || key.used_by == UsedBy::both));
+    const auto changed = [&](const std::string& effects, UsedBy executable) {
+      const std::string base = "effects: [" + effects + "]\ncontact: {law: mean_depth}\n";
+      const Scene before = scene_of(folder, base, table.at(key.path).common);
+      const Scene after = scene_of(folder, base, table.at(key.path).changed);
+      CHECK(to_yaml(before) != to_yaml(after));
+      return config_hash(before, executable) != config_hash(after, executable);
+    };
+    const bool dem = key.used_by == UsedBy::dem || key.used_by == UsedBy::both;
+    const bool xfem = key.used_by == UsedBy::xfem || key.used_by == UsedBy::both;
+    // The literal reading goes with neither effect on one particle.
+    const std::string all = key.path == "breakage.literal" ? every : every + specimen;
+    CHECK(changed(all, UsedBy::dem) == dem);
+    CHECK(changed(all, UsedBy::xfem) == xfem);
+    const bool of_effect = key.description.find("with effect ") != std::string::npos ||
+                           key.path.starts_with("breakage.") || key.path == "preparation.initial_friction";
+    of_effects += of_effect;
+    CHECK(changed("", UsedBy::dem) == (dem && !of_effect));
+    CHECK(changed("", UsedBy::xfem) == (xfem && !of_effect));
   }
+  CHECK(of_effects == 17);
 }
 
 TEST_CASE("Of the effects, xfem's configuration hash covers breakage alone") {
