@@ -28,6 +28,10 @@ constexpr double kCrackSpacingInElements = 1.5;
 /// particles).
 constexpr double kTie = 1e-9;
 
+/// The mean stress of a solution is that of its loads (virial); one that misses it by more than this share of the loads
+/// times diameter over area comes from a system too badly conditioned to say anything, that of a sliver of 100:1.
+constexpr double kBalance = 1e-6;
+
 struct Critical {
   int element = -1;
   double load_factor = std::numeric_limits<double>::infinity();
@@ -65,6 +69,9 @@ class Analysis {
                 parameters.literal ? 0 : parameters.face_friction),
         stored_(cracks.begin(), cracks.end()),
         cracks_(stored_) {
+    virial_ = virial_stress(loads, model.outline, parameters.literal ? 0 : parameters.load_patch * diameter_);
+    for (const Load& load : loads) stress_scale_ += load.force.norm();
+    stress_scale_ *= common::diameter(model.outline) / model.area;
     result_.unbalance = IntactModel::unbalance(loads);
   }
 
@@ -77,6 +84,7 @@ class Analysis {
   }
   bool restore_cracks();
   bool solve();
+  bool balances(const Stress& mean) const;
   std::optional<DrivenTip> driven(int crack, int end) const;
   bool grow_tips();
   bool settle(const TipStep& step, int crack);
@@ -93,6 +101,8 @@ class Analysis {
   CrackedSolver solver_;
   const std::vector<Crack> stored_;
   std::vector<Crack> cracks_;
+  Stress virial_;                  ///< mean stress that the loads ask for
+  double stress_scale_ = 0;        ///< sum of the forces times diameter over area [Pa]
   std::vector<Stress> uncracked_;  ///< averaged stress of the uncracked particle
   CrackedState state_;
   std::set<int> no_start_;  ///< elements in which a crack would only cut off a corner
@@ -149,6 +159,12 @@ bool Analysis::restore_cracks() {
     }
   }
   return true;
+}
+
+bool Analysis::balances(const Stress& mean) const {
+  const double off =
+      std::max({std::abs(mean.xx - virial_.xx), std::abs(mean.yy - virial_.yy), std::abs(mean.xy - virial_.xy)});
+  return off <= kBalance * stress_scale_;
 }
 
 bool Analysis::solve() {
@@ -322,10 +338,14 @@ BreakageResult Analysis::run() {
 
   if (!std::isfinite(result_.mean_stress.xx + result_.mean_stress.yy + result_.mean_stress.xy)) {
     refuse("the stress is not finite");
+  } else if (!balances(result_.mean_stress)) {
+    refuse("the stress does not balance the loads: the particle is too slender for its mesh");
   } else if (restore_cracks() && (critical.load_factor <= 1 || !cracks_.empty()) && solve()) {
     while (!finished_ && (grow_tips() || (!finished_ && start_next_crack()))) {
     }
     if (state_.solved) result_.mean_stress = mean_stress(mesh_, state_.stress);
+    if (state_.solved && !balances(result_.mean_stress))
+      refuse("the stress of the cracked particle does not balance the loads");
   }
   if (!finished_) {
     const bool failed_somewhere = !cracks_.empty() || critical.load_factor <= 1;

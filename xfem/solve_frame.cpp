@@ -371,6 +371,10 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
   CrackState state;
   std::vector<common::Rotation> rotation;
   std::vector<Case> cases;
+  // Room for the ids of all fragments that there can be.
+  const std::int64_t largest = std::max(frame.next_id, frame.particles.id.empty() ? 0 : frame.particles.id.back());
+  if (largest >= std::numeric_limits<std::int64_t>::max() - 2 * std::ssize(frame.particles.id))
+    throw common::bad_input(fmt::format("frame {}: ids up to {} leave none for fragments", frame.frame, largest));
   {
     const PhaseTimer timer(self.seconds, "loads");
     if (previous) {

@@ -100,6 +100,11 @@ void validate_particles(const Particles& p, const Source& source) {
   check_offsets("particles/vertex_offset", p.vertex_offset, p.size(), p.vertices.size(), source);
   check_finite("particles/vertices", p.vertices, source);
   for (std::size_t i = 0; i < p.size(); ++i) {
+    if (std::isnan(sin_cos(p.angle[i]).sin)) {
+      source.fail_dataset(
+          "particles/angle",
+          fmt::format("particle {} has turned by {} rad, too far to know its direction", p.id[i], p.angle[i]));
+    }
     const std::string defect = outline_defect(p.outline(i));
     if (!defect.empty()) source.fail_dataset("particles/vertices", fmt::format("particle {}: {}", p.id[i], defect));
   }

@@ -276,3 +276,17 @@ TEST_CASE("One unbalanced contact is carried by inertia") {
   const Stress virial = virial_stress(loads, kBlock);
   CHECK(result.mean_stress.yy == Approx(virial.yy).epsilon(1e-12));
 }
+
+TEST_CASE("A sliver whose solution does not balance its loads is refused") {
+  // 0.23 m x 1.3 mm: bent, its stiffness spans more digits than a double has.
+  const Polygon sliver{{-0.0067694124885841374, 0.021643336146449386},
+                       {0.027333812958973681, -0.097757175651479317},
+                       {0.016557835775639317, -0.057522106094698773},
+                       {-0.027561225122034981, 0.099858891281273676}};
+  REQUIRE(common::outline_defect(sliver).empty());
+  const std::vector<Load> loads{{sliver[1], {-2268.251543760792, -3905.5770184602757}}};
+  const ParticleModel model(sliver, 25, {20e9, 0.2}, 0.1);
+  const BreakageResult result = analyse(model, loads, {}, without_floor());
+  CHECK(result.status == ParticleStatus::refused);
+  CHECK_THAT(result.reason, Catch::Contains("does not balance the loads"));
+}

@@ -338,3 +338,12 @@ TEST_CASE("a particle under a force that is not finite is refused, the others ar
     payload(split);  // it can be written
   }
 }
+
+TEST_CASE("A frame whose ids leave none for fragments is refused") {
+  for (const bool by_next_id : {true, false}) {
+    common::Frame frame = sample::frame();
+    (by_next_id ? frame.next_id : frame.particles.id.back()) = std::numeric_limits<std::int64_t>::max() - 5;
+    xfem::FrameSolver solver(sample::scene(), 1);
+    CHECK_THROWS_WITH(solver.solve(frame, nullptr), Catch::Contains("leave none for fragments"));
+  }
+}

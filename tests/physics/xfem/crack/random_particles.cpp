@@ -4,11 +4,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/physics/xfem/crack/result_defect.hpp"
 #include "tests/unit/xfem/outlines.hpp"
 #include "xfem/breakage.hpp"
 
 using namespace xfem;
 using common::ParticleStatus;
+using result_check::same_cracks;
 
 namespace {
 
@@ -44,44 +46,9 @@ std::vector<Load> random_contacts(common::Random& random, const Polygon& outline
   return loads;
 }
 
-bool same_cracks(const std::vector<Crack>& a, const std::vector<Crack>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t c = 0; c < a.size(); ++c) {
-    if (a[c].tips != b[c].tips || a[c].points.size() != b[c].points.size()) return false;
-    for (std::size_t i = 0; i < a[c].points.size(); ++i) {
-      const CrackPoint &p = a[c].points[i], &q = b[c].points[i];
-      if (p.edge != q.edge || p.fraction != q.fraction || p.position != q.position) return false;
-    }
-  }
-  return true;
-}
-
 void check_result(const ParticleModel& model, const BreakageResult& result, const BreakageParameters& parameters) {
-  const Mesh& mesh = model.elastic.mesh();
-  CHECK(std::isfinite(result.mean_stress.xx + result.mean_stress.yy + result.mean_stress.xy));
-  CHECK(result.growth_steps <= 4 * static_cast<int>(mesh.triangles.size()) + 1);
-  CHECK(static_cast<int>(result.cracks.size()) <= parameters.max_cracks);
-  for (const Crack& crack : result.cracks) CHECK(crack_defect(mesh, crack) == "");
-  // No element carries two cracks: a tip stops before another crack.
-  std::vector<int> cuts(mesh.triangles.size(), 0);
-  for (const Crack& crack : result.cracks) {
-    for (std::size_t i = 1; i < crack.points.size(); ++i) {
-      ++cuts[segment_element(mesh, crack.points[i - 1], crack.points[i])];
-    }
-  }
-  for (const int count : cuts) CHECK(count <= 1);
-  if (result.status != ParticleStatus::broken) {
-    CHECK_FALSE(result.path);
-    CHECK(result.left.empty());
-    return;
-  }
-  REQUIRE(result.path);
-  const double left = common::area(result.left);
-  const double right = common::area(result.right);
-  CHECK(std::abs(left + right - model.area) <= 1e-12 * model.area);
-  CHECK(std::min(left, right) >= parameters.minimum_fragment * model.area);
-  CHECK(common::outline_defect(result.left).empty());
-  CHECK(common::outline_defect(result.right).empty());
+  REQUIRE(result_check::result_defect(model, result, parameters) == "");
+  CHECK_FALSE(result_check::cuts_twice(model.elastic.mesh(), result.cracks));
 }
 
 }  // namespace

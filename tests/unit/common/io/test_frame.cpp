@@ -365,3 +365,12 @@ TEST_CASE("Columns come back ascending by name, whatever order they were written
   CHECK(read.history[0].name == "axial_strain");
   CHECK(read.checkpoint[0].name == "energy");
 }
+
+TEST_CASE("A particle that has turned too far for a direction is refused in writing and named") {
+  const Directory directory;
+  Frame frame = sample_frame();
+  frame.particles.angle[2] = 1e7;
+  const Thrown thrown = error_of([&] { write_frame(directory / "f.h5", frame, {}); });
+  CHECK(thrown.code == ExitCode::numerical_failure);
+  CHECK_THAT(thrown.text, Catch::Contains("particle 17 has turned by"));
+}
