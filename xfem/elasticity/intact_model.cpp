@@ -151,12 +151,14 @@ BodyForce IntactModel::inertia_relief(std::span<const Load> loads, double patch)
 
 double IntactModel::unbalance(std::span<const Load> loads) {
   Vec2 resultant = Vec2::Zero();
-  double sum = 0;
+  double sum = 0, moment = 0, levers = 0;
   for (const Load& load : loads) {
     resultant += load.force;
     sum += load.force.norm();
+    moment += common::cross(load.point, load.force);
+    levers += load.force.norm() * load.point.norm();
   }
-  return sum > 0 ? resultant.norm() / sum : 0;
+  return std::max(sum > 0 ? resultant.norm() / sum : 0, levers > 0 ? std::abs(moment) / levers : 0);
 }
 
 Eigen::VectorXd IntactModel::solve(const Eigen::VectorXd& forces) const {

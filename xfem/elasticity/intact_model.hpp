@@ -70,7 +70,8 @@ class IntactModel {
   Eigen::VectorXd nodal_forces(std::span<const Load> loads, double patch = 0) const;
   /// The body force in it.
   BodyForce inertia_relief(std::span<const Load> loads, double patch = 0) const;
-  /// |resultant of the loads| / sum of |load|, before inertia relief.
+  /// The larger of |resultant of the loads| / sum of |load| and |their moment about the origin| / sum of |load|
+  /// |point|, before inertia relief. Points about the centroid.
   static double unbalance(std::span<const Load> loads);
 
   /// Displacements (2 n) [m] for nodal forces (2 n); the fixed dofs come out zero. Thread-safe.

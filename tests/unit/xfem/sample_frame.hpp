@@ -7,11 +7,13 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/config/scene.hpp"
 #include "common/io/frame.hpp"
+#include "common/io/split.hpp"
 
 namespace sample {
 
@@ -142,6 +144,43 @@ inline common::Frame frame() {
   }
   sort_contacts(frame.contacts);
   return frame;
+}
+
+/// The same particles a frame later, broken ones replaced by their fragments, forces grown by `factor`.
+inline common::Frame next_frame(const common::Frame& frame, const common::Split& split, double factor) {
+  common::Frame next;
+  next.frame = frame.frame + 1;
+  next.next_id = frame.next_id;
+  next.config_hash = frame.config_hash;
+  const std::set<std::int64_t> broken(split.broken.parent.begin(), split.broken.parent.end());
+  const common::Particles& p = frame.particles;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (!broken.count(p.id[i])) {
+      next.next_id = p.id[i];
+      const auto outline = p.outline(i);
+      add_particle(next, {outline.begin(), outline.end()}, p.position[i], p.angle[i], p.boundary[i]);
+    }
+  for (std::size_t f = 0; f < split.fragments.id.size(); ++f) {
+    common::Polygon outline(split.fragments.vertices.begin() + split.fragments.vertex_offset[f],
+                            split.fragments.vertices.begin() + split.fragments.vertex_offset[f + 1]);
+    const Vec2 c = common::centroid(outline);
+    for (Vec2& v : outline) v -= c;
+    next.next_id = split.fragments.id[f];
+    add_particle(next, outline, {100.0 + static_cast<double>(f), 0}, 0, false);
+  }
+  for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
+    if (broken.count(frame.contacts.b[c])) continue;
+    next.contacts.a.push_back(frame.contacts.a[c]);
+    next.contacts.b.push_back(frame.contacts.b[c]);
+    next.contacts.point.push_back(frame.contacts.point[c]);
+    next.contacts.normal.push_back(frame.contacts.normal[c]);
+    next.contacts.force.push_back(factor * frame.contacts.force[c]);
+    next.contacts.normal_force.push_back(factor * frame.contacts.normal_force[c]);
+    next.contacts.shear_force.push_back(0);
+    next.contacts.overlap_area.push_back(frame.contacts.overlap_area[c]);
+    next.contacts.overlap_width.push_back(frame.contacts.overlap_width[c]);
+  }
+  return next;
 }
 
 /// A directory of its own for a test's files, removed with the object.

@@ -24,37 +24,6 @@ int count(const common::Split& split, ParticleStatus status) {
   return static_cast<int>(std::count(split.particles.status.begin(), split.particles.status.end(), status));
 }
 
-/// The same particles a frame later, broken ones replaced by their fragments, forces grown by `factor`.
-common::Frame next_frame(const common::Frame& frame, const common::Split& split, double factor) {
-  common::Frame next;
-  next.frame = frame.frame + 1;
-  next.next_id = frame.next_id;
-  const std::set<std::int64_t> broken(split.broken.parent.begin(), split.broken.parent.end());
-  const common::Particles& p = frame.particles;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (!broken.count(p.id[i])) {
-      next.next_id = p.id[i];
-      const auto outline = p.outline(i);
-      sample::add_particle(next, {outline.begin(), outline.end()}, p.position[i], p.angle[i], p.boundary[i]);
-    }
-  for (std::size_t f = 0; f < split.fragments.id.size(); ++f) {
-    common::Polygon outline(split.fragments.vertices.begin() + split.fragments.vertex_offset[f],
-                            split.fragments.vertices.begin() + split.fragments.vertex_offset[f + 1]);
-    const Vec2 c = common::centroid(outline);
-    for (Vec2& v : outline) v -= c;
-    next.next_id = split.fragments.id[f];
-    sample::add_particle(next, outline, {100.0 + static_cast<double>(f), 0}, 0, false);
-  }
-  for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
-    if (broken.count(frame.contacts.b[c])) continue;
-    next.contacts.a.push_back(frame.contacts.a[c]);
-    next.contacts.b.push_back(frame.contacts.b[c]);
-    next.contacts.point.push_back(frame.contacts.point[c]);
-    next.contacts.force.push_back(factor * frame.contacts.force[c]);
-  }
-  return next;
-}
-
 }  // namespace
 
 TEST_CASE("statuses follow from boundary, size and load") {
@@ -154,7 +123,7 @@ TEST_CASE("the split is the same for any number of threads, with and without cac
   CHECK(one.counts().at("models_built") == 0);
 
   // The next frame, through a solver that knows the particles and through one that does not.
-  const common::Frame next = next_frame(frame, first, 1.05);
+  const common::Frame next = sample::next_frame(frame, first, 1.05);
   CHECK(payload(one.solve(next, &first)) == payload(xfem::FrameSolver(sample::scene(), 2).solve(next, &first)));
   CHECK(one.counts().at("models_built") == 0);
 }
@@ -164,7 +133,7 @@ TEST_CASE("cracks persist: they are kept without load and start the next analysi
   xfem::FrameSolver solver(sample::scene(), 1);
   const common::Split first = solver.solve(frame, nullptr);
   REQUIRE(count(first, ParticleStatus::arrested) >= 1);
-  common::Frame next = next_frame(frame, first, 1);
+  common::Frame next = sample::next_frame(frame, first, 1);
   next.contacts = {};
   const common::Split second = solver.solve(next, &first);
   const xfem::CrackState before = xfem::stored_cracks(first), after = xfem::stored_cracks(second);

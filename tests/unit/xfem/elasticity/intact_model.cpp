@@ -186,6 +186,8 @@ TEST_CASE("Nodal forces have neither resultant nor moment, and balanced loads ne
   CHECK(IntactModel::unbalance({}) == 0);
   const std::vector<Load> single{{Vec2(1, 0), Vec2(3, 4)}};
   CHECK(IntactModel::unbalance(single) == Approx(1));
+  const std::vector<Load> couple{{Vec2(1, 1), Vec2(-3, 3)}, {Vec2(-1, -1), Vec2(3, -3)}};
+  CHECK(IntactModel::unbalance(couple) == Approx(1));
 }
 
 TEST_CASE("A patch spreads a force over its length and keeps resultant and moment", "[elasticity]") {
