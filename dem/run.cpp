@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "dem/checkpoint.hpp"
 #include "dem/fragments.hpp"
+#include "dem/guards.hpp"
 #include "dem/history.hpp"
 #include "dem/measures.hpp"
 #include "dem/run_directory.hpp"

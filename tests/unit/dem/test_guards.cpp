@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "dem/history.hpp"
+#include "dem/guards.hpp"
 
 namespace {
 
