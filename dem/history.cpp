@@ -172,6 +172,10 @@ void History::record(const Engine& engine, const Control& control) {
   }
 }
 
+double History::last(const std::string& name) const {
+  return std::find_if(columns_.begin(), columns_.end(), [&](const auto& c) { return c.name == name; })->values.back();
+}
+
 std::vector<common::Column> History::take() {
   std::vector<common::Column> taken = columns_;
   for (common::Column& c : columns_) c.values.clear();

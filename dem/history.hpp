@@ -1,6 +1,7 @@
 // The rows of history/*: what the assembly does as a whole, recorded every few steps and at every frame.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/io/frame.hpp"
@@ -14,6 +15,9 @@ class History {
 
   /// Measures the present state and appends a row. Throws numerical_failure if a measure is not finite.
   void record(const Engine& engine, const Control& control);
+
+  /// Value of a column in the last row.
+  double last(const std::string& name) const;
 
   /// The rows since the last call.
   std::vector<common::Column> take();

@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "dem/checkpoint.hpp"
+#include "dem/failure.hpp"
 #include "dem/fragments.hpp"
 #include "dem/guards.hpp"
 #include "dem/history.hpp"
@@ -27,6 +28,7 @@ namespace dem {
 namespace {
 
 constexpr int kPreparationInterval = 4000;  // steps between two checkpoints: a few seconds of work
+constexpr int kPreparationGuards = 100;     // steps between two looks at its state
 
 using Clock = std::chrono::steady_clock;
 
@@ -56,12 +58,18 @@ class Run {
         ports_(ports),
         hash_(common::config_hash(scene, common::UsedBy::dem)),
         directory_(options.directory, options.resume, [this](const std::string& text) { warn(text); }),
+        is_replay_(is_failure(options.directory)),
         history_(scene) {}
 
   RunEnd operator()() {
-    const RunEnd end = run();
-    write_profile();
-    return end;
+    try {
+      const RunEnd end = run();
+      write_profile();
+      return end;
+    } catch (const common::Error& error) {
+      if (error.code() != common::ExitCode::numerical_failure || !engine_) throw;
+      throw common::numerical_failure(keep_failure(error));
+    }
   }
 
  private:
@@ -81,7 +89,8 @@ class Run {
     }
     for (const std::string& text : shortcomings_of(scene_, *engine_)) warn(text);
     Shear::begin(*engine_, control_);
-    history_.record(*engine_, control_);
+    require_progress_to_the_end();
+    record();
     const std::optional<RunEnd> end = write_frame_and_exchange();
     return end ? *end : shear();
   }
@@ -112,6 +121,7 @@ class Run {
       }
     }
     make_engine(to_state(frame));
+    checkpoint_ = scene_.preparation.from;
     engine_->edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;
   }
 
@@ -133,18 +143,22 @@ class Run {
     if (found) {
       control_ = read_control(*found);
       make_engine(to_state(*found));
+      checkpoint_ = directory_.preparation(checkpoint);
     } else {
       Start start = fresh_start(scene_);
       control_ = start.control;
       make_engine(std::move(start.state));
     }
+    require_progress(engine_->state(), kLongestPhase, scene_.guards.steps);
     Preparation preparation(scene_, *engine_, control_);
     while (control_.phase != Phase::shear) {
       preparation.step();
       const std::int64_t step = engine_->clock().step;
       if (step % 500 == 0) report_preparation();
+      if (step % kPreparationGuards == 0) guard_state();
       if (step % kPreparationInterval == 0 && control_.phase != Phase::shear) {
-        write_checkpoint(directory_.preparation(++checkpoint));
+        checkpoint_ = directory_.preparation(++checkpoint);
+        write_checkpoint(checkpoint_);
         directory_.drop_preparations_before(checkpoint);
         engine_->restart();
       }
@@ -161,12 +175,35 @@ class Run {
   void take_sample(const common::Frame& sample) {
     control_ = read_control(sample);
     make_engine(to_state(sample));
+    checkpoint_ = directory_.sample();
   }
 
   void write_checkpoint(const fs::path& path) {
+    guard_state();
     history_.record(*engine_, control_);
     common::Frame frame = snapshot();
     common::write_frame(path, frame, scene_.output.durability);
+    if (!is_replay_) remove_failure(options_.directory);
+  }
+
+  // The checks of every instant.
+  void guard_state() const {
+    require_finite(engine_->clock().particles, engine_->forces());
+    require_possible_contacts(engine_->state(), scene_.guards.overlap);
+  }
+
+  // A row of the history in shear, of a state that passes its checks.
+  void record() {
+    guard_state();
+    history_.record(*engine_, control_);
+    if (!scene_.effects.energy_ledger) return;
+    require_balanced_energy(scene_, *engine_, control_, history_.last("energy_residual"),
+                            history_.last("elastic_energy"));
+  }
+
+  void require_progress_to_the_end() const {
+    const double strain = scene_.shear.axial_strain - control_.axial_strain();
+    require_progress(engine_->clock(), strain / scene_.shear.strain_rate, scene_.guards.steps);
   }
 
   common::Frame snapshot() {
@@ -183,6 +220,7 @@ class Run {
     control_ = read_control(frame);
     make_engine(to_state(frame));
     control_.next_frame = static_cast<double>(frame.frame + 1);
+    checkpoint_ = directory_.frame(frame.frame);
     if (frame.final) return RunEnd::finished;
     if (options_.until_frame && frame.frame >= *options_.until_frame) return RunEnd::paused;
     if (scene_.effects.breakage) {
@@ -202,10 +240,10 @@ class Run {
     for (;;) {
       while (!shear_stage.frame_due()) {
         shear_stage.step();
-        if (engine_->clock().step % scene_.shear.history_interval == 0) history_.record(*engine_, control_);
+        if (engine_->clock().step % scene_.shear.history_interval == 0) record();
         if (ports_.interrupted()) return RunEnd::interrupted;
       }
-      if (engine_->clock().step % scene_.shear.history_interval != 0) history_.record(*engine_, control_);
+      if (engine_->clock().step % scene_.shear.history_interval != 0) record();
       if (const auto end = write_frame_and_exchange()) {
         seconds_["shear"] += seconds_since(begin) - seconds_["write"] - seconds_["exchange"];
         return *end;
@@ -217,13 +255,19 @@ class Run {
   std::optional<RunEnd> write_frame_and_exchange() {
     const Shear stage(scene_, *engine_, control_);
     common::Frame frame = snapshot();
-    if (frame.frame > 0) require_sound(scene_, frame.history);
+    if (frame.frame > 0) {
+      require_rest(scene_, frame.history, *engine_);
+      require_lateral_stress(scene_, frame.history);
+    }
     frame.final = frame.frame >= stage.last_frame();
     report_shear();
     const auto write_begin = Clock::now();
     const common::WrittenFile written =
         common::write_frame(directory_.frame(frame.frame), frame, scene_.output.durability);
     seconds_["write"] += seconds_since(write_begin);
+    checkpoint_ = written.path;
+    split_.clear();
+    if (!is_replay_) remove_failure(options_.directory);  // the run got past it
     control_.next_frame += 1;
     engine_->restart();
 
@@ -251,6 +295,8 @@ class Run {
       throw common::bad_input(fmt::format("{}: answers a frame with payload hash {}, expected {}", path.string(),
                                           split.frame_hash, frame_hash));
     }
+    split_ = path;
+    require_answers(scene_, split);
     if (split.broken.parent.empty()) return;
     const auto energy = [&] {
       return elastic_energy(engine_->state(), engine_->constants()) + engine_->kinetic_energy();
@@ -263,6 +309,62 @@ class Run {
     engine_->edit().energy.released_by_breakage += before - energy();
     control_.momentum_error = std::max(control_.momentum_error, report.momentum_error);
     control_.broken += report.broken;
+    require_progress_to_the_end();
+  }
+
+  // The command that analyses a refused particle alone, if xfem has left its file in this run (xfem/refusal.hpp).
+  std::string refused_alone(const Failure& failure) const {
+    const std::string particle = (options_.directory / "failure").string() +
+                                 fmt::format("/frame_{:06}_particle_{}", failure.frame, failure.finding.particles[0]);
+    if (!fs::exists(particle + ".h5")) return {};
+    const bool cracked = fs::exists(particle + "_previous.h5");
+    return fmt::format("the particle alone: xfem solve {0}.h5 --config {1}{2} --out SPLIT.h5", particle,
+                       (options_.directory / "case.yaml").string(),
+                       cracked ? fmt::format(" --previous {}_previous.h5", particle) : "");
+  }
+
+  // Writes down what a guard found, and says it: the text names the place, the reason and what can be done.
+  std::string keep_failure(const common::Error& error) {
+    Failure failure;
+    if (const auto* found = dynamic_cast<const NumericalFailure*>(&error)) {
+      failure.finding = found->finding();
+    } else {
+      failure.finding = {"measure", error.what(), {}, {}};
+    }
+    const State& state = engine_->clock();
+    const bool refusal = failure.finding.guard == "refusals";
+    failure.stage = name_of(control_.phase);
+    failure.frame = static_cast<std::int64_t>(control_.next_frame) - (refusal ? 1 : 0);
+    failure.step = state.step;
+    failure.time = state.time;
+    failure.axial_strain = control_.axial_strain();
+    failure.checkpoint = checkpoint_;
+    failure.split = split_;
+    const bool shearing = control_.phase == Phase::shear;
+    std::string text = shearing ? fmt::format("frame {} (step {}, axial strain {:.6f}): ", failure.frame, failure.step,
+                                              failure.axial_strain)
+                                : fmt::format("{} (step {}): ", failure.stage, failure.step);
+    text += error.what();
+    if (is_replay_) return text;
+    const std::string out = options_.directory.string();
+    try {
+      write_failure(options_.directory, scene_, failure, snapshot());
+      text += '\n' + (refusal ? refused_alone(failure) : std::string());
+      if (text.back() == '\n') {
+        text += fmt::format("the failure alone: dem run {0}/failure/case.yaml --out {0}/failure --resume", out);
+      }
+    } catch (const common::Error& not_kept) {
+      text += fmt::format("\nthe failure could not be kept: {}", not_kept.what());
+    }
+    text +=
+        fmt::format("\nthe files of {} are valid: --resume goes on with other guards (--set guards.KEY=VALUE)", out);
+    if (shearing && !refusal) {
+      text += fmt::format(
+          "; a smaller time_step.safety or another contact law takes a new directory, from the same sample with --set "
+          "preparation.from={}",
+          scene_.preparation.from.empty() ? directory_.sample().string() : scene_.preparation.from);
+    }
+    return text;
   }
 
   void report_preparation() const {
@@ -313,6 +415,9 @@ class Run {
   const RunPorts& ports_;
   std::string hash_;
   RunDirectory directory_;
+  bool is_replay_;       // in the directory that a failure has left
+  fs::path checkpoint_;  // newest file that a run could go on from
+  fs::path split_;       // applied since
   History history_;
   Control control_;
   std::unique_ptr<Engine> engine_;

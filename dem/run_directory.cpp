@@ -66,8 +66,18 @@ fs::path RunDirectory::numbered(const char* kind, std::int64_t index) const {
 
 void RunDirectory::write_case(const common::Scene& scene, Existing existing) const {
   const fs::path path = root_ / "case.yaml";
-  if (existing == Existing::kept && fs::exists(path)) return;
-  const std::string text = common::to_yaml(scene);
+  std::string text = common::to_yaml(scene);
+  if (existing == Existing::kept && fs::exists(path)) {
+    // What stands there stays in force, but for the guards: a run goes on with those that it is resumed with.
+    try {
+      common::Scene kept = common::read_scene(path);
+      if (kept.guards == scene.guards) return;
+      kept.guards = scene.guards;
+      text = common::to_yaml(kept);
+    } catch (const common::Error&) {
+      return;
+    }
+  }
   common::write_atomically(path, std::as_bytes(std::span(text)), scene.output.durability);
 }
 

@@ -168,6 +168,23 @@ void bind_drives(Specification& keys, ServoOptions& servo, ShearOptions& shear) 
                "steps between two rows of the history");
 }
 
+void bind_guards(Specification& keys, GuardOptions& guards) {
+  keys.number(
+      "guards.unbalanced_force", guards.unbalanced_force, kPositive, "-", UsedBy::neither,
+      "stop if it is never below this between two frames, with local damping and slow loading; at most 0.021 in "
+      "sound runs");
+  keys.number("guards.energy_residual", guards.energy_residual, kPositive, "-", UsedBy::neither,
+              "stop if it exceeds this share of boundary work and stored energy, with effect energy_ledger");
+  keys.number("guards.servo_error", guards.servo_error, kPositive, "-", UsedBy::neither,
+              "stop if the lateral stress is off its target by more than this between two frames, and comes no nearer");
+  keys.number("guards.overlap", guards.overlap, kPositive, "-", UsedBy::neither,
+              "stop if two particles in contact overlap by more than this share of the smaller one's area");
+  keys.number("guards.steps", guards.steps, kPositive, "-", UsedBy::neither,
+              "stop if the rest of the test would take more steps than this");
+  keys.choice("guards.refusals", guards.refusals, {"stop", "continue"}, UsedBy::neither,
+              "a particle whose breakage analysis is refused stops the run, or stays as it is");
+}
+
 void bind_output(Specification& keys, OutputOptions& output) {
   // A word or a count: `word` stands for the count 0, and `one` (if any) for 1.
   const auto count = [&keys](const std::string& path, int& value, const std::string& word, const std::string& one,
@@ -219,6 +236,7 @@ Specification specification(Scene& scene) {
               "axial strain between two breakage analyses, with effect breakage");
   bind_mesh_nodes(keys, "breakage.nodes", scene.breakage.nodes);
   bind_particle_breakage(keys, scene.breakage);
+  bind_guards(keys, scene.guards);
   bind_output(keys, scene.output);
   return keys;
 }

@@ -142,6 +142,22 @@ struct OutputOptions {
   int keep_frames = 0;    ///< 0: all; a run takes nothing else
 };
 
+/// What a breakage analysis that was refused for a particle means to the run.
+enum class Refusals { stop, go_on };
+
+/// Limits beyond which a run stops with exit code 3 (dem/guards.hpp). They change no number of a run, so no
+/// configuration hash covers them.
+struct GuardOptions {
+  double unbalanced_force = 0.03;  ///< mean |sum F| / mean normal force, smallest between two frames
+  double energy_residual = 0.05;   ///< of boundary work and stored energy
+  double servo_error = 0.3;        ///< |lateral stress / pressure - 1|, smallest between two frames
+  double overlap = 0.5;            ///< of two particles, in areas of the smaller one
+  double steps = 1e9;              ///< that a run still takes at its present time step
+  Refusals refusals = Refusals::stop;
+
+  bool operator==(const GuardOptions&) const = default;
+};
+
 struct Scene {
   std::filesystem::path file;  ///< where it was read; empty if made in code
   std::uint64_t seed = 1;
@@ -158,6 +174,7 @@ struct Scene {
   ServoOptions servo;
   ShearOptions shear;
   BreakageOptions breakage;
+  GuardOptions guards;
   OutputOptions output;
 
   /// Axial strain between two frames.
@@ -173,9 +190,9 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides =
 /// and every key commented with its unit and description.
 std::string to_yaml(const Scene& scene);
 
-/// Hex XXH3-128 over the resolved keys that the executable (dem or xfem) uses; never `output`, threads or file names:
-/// of files of outlines and gradings the content counts, and the frame named by `preparation.from` records its own
-/// configuration.
+/// Hex XXH3-128 over the resolved keys that the executable (dem or xfem) uses; never `guards`, `output`, threads or
+/// file names: of files of outlines and gradings the content counts, and the frame named by `preparation.from` records
+/// its own configuration.
 std::string config_hash(const Scene& scene, UsedBy executable);
 
 /// Every key of a scene, in order, for `explain` and the documentation.

@@ -8,6 +8,7 @@
 #include "common/error.hpp"
 #include "dem/boundary/ring.hpp"
 #include "dem/checkpoint.hpp"
+#include "dem/guards.hpp"
 #include "dem/measures.hpp"
 
 namespace dem {
@@ -56,6 +57,7 @@ common::Column column(const std::string& name, const char* unit, const char* des
 }
 
 std::vector<std::int32_t> ring_of(const Particles& p) {
+  require_finite_positions(p);
   double area = 0;
   for (const double a : p.area) area += a;
   // Fragments do not count: the boundary never breaks, and a ball that shrank as others do would trace deeper dents.

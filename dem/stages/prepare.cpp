@@ -21,8 +21,7 @@ constexpr double kFrictionHalving = 0.15;  // [s] in which densification halves 
 constexpr double kFirstTry = 0.0005;       // above the target: a sample gets hardly denser while it comes to rest
 constexpr double kRingFixed = 0.012;       // above the target: the ring stays as it is; one particle is 0.005 of 300
 constexpr double kLowestFriction = 0.002;
-constexpr double kSettled = 0.003;    // unbalanced force at which a frictionless sample gets no denser
-constexpr double kLongestPhase = 20;  // [s] of simulated time
+constexpr double kSettled = 0.003;  // unbalanced force at which a frictionless sample gets no denser
 
 /// Larger relative error of the two normal stresses.
 double stress_error(const State& state, double pressure) {

@@ -16,6 +16,9 @@
 
 namespace dem {
 
+/// Simulated time after which a phase ends whatever it has reached [s].
+inline constexpr double kLongestPhase = 20;
+
 class Preparation {
  public:
   Preparation(const common::Scene& scene, Engine& engine, Control& control);

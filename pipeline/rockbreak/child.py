@@ -87,7 +87,8 @@ class Child:
             self.wait()
             said = text in " ".join(self._said)
             raise RockbreakError(int(code) if code.isdigit() else IO_FAILURE,
-                                 f"{self.name} failed; its message stands above" if said else f"{self.name}: {text}")
+                                 f"{self.name} failed; its message stands above" if said else f"{self.name}: {text}",
+                                 f"{self.name}: {text}")
         if not line:
             if self.wait() != 0:
                 self.fail()
@@ -111,7 +112,12 @@ class Child:
         if code == 0:
             raise RockbreakError(IO_FAILURE, f"{self.name} ended before its work was done")
         raise RockbreakError(code, f"{self.name} failed with exit code {code}"
-                             + ("; its message stands above" if self._said else ""))
+                             + ("; its message stands above" if self._said else ""), self._last_words())
+
+    def _last_words(self):
+        """All that it said from its last error on."""
+        errors = [i for i, text in enumerate(self._said) if "error:" in text]
+        return " ".join(self._said[errors[-1]:]) if errors else None
 
     def finish(self):
         """Waits for an orderly end."""

@@ -10,13 +10,12 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
 
 from .child import Child, user_seconds_of_ended_children
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
-from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, written_file
+from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, refusals_in, written_file
 from .sealed import open_sealed
 
 
@@ -276,17 +275,9 @@ class Run:
         self._broken += broken
         self._ledger.write("split", frame=k, broken=broken, **written_file(path),
                            seconds={"xfem": round(waited, 6), "handover": round(handover, 6)})
-        for particle, reason in _refusals_in(path):
+        for particle, reason in refusals_in(path):
             self.child_event("xfem", {"event": "warning", "frame": k, "particle": particle,
                                       "text": f"frame {k}: particle {particle}: analysis refused: {reason}"})
-
-
-def _refusals_in(path):
-    with open_sealed(path) as file:
-        if "refusals" not in file or len(file["refusals/particle"]) == 0:
-            return []
-        reasons = file["refusals/reason"].asstr()[:]
-        return [(int(particle), str(reason)) for particle, reason in zip(np.array(file["refusals/particle"]), reasons)]
 
 
 def catch_signals():
@@ -324,12 +315,13 @@ def drive(options, progress):
             run = Run(options, directory, lock, ledger, progress)
             if starts and directory.case_file.exists() and {key: starts[0].get(key) for key in scene} != scene:
                 run.child_event("driver", {"event": "warning", "text": f"{options.case} or its --set is not what "
-                                           f"{directory.path} was started with; {directory.case_file} stays in force"})
+                                           f"{directory.path} was started with; {directory.case_file} stays in force, "
+                                           "but for its guards"})
             try:
                 run.execute()
             except (RockbreakError, Interrupted) as end:
                 with contextlib.suppress(RockbreakError):  # the ledger may be what fails
-                    ledger.write("end", code=end.code, reason=str(end), **cpu_seconds())
+                    ledger.write("end", code=end.code, reason=end.reason, **cpu_seconds())
                 raise
             ledger.write("end", code=0, **cpu_seconds())
     return directory

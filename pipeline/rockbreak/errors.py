@@ -6,11 +6,13 @@ IO_FAILURE = 4
 
 
 class RockbreakError(Exception):
-    """An error whose message tells the user where it is, what was found and what was expected."""
+    """An error whose message tells the user where it is, what was found and what was expected. `reason`: the same for a
+    reader who has not seen what a child said before."""
 
-    def __init__(self, code, message):
+    def __init__(self, code, message, reason=None):
         super().__init__(message)
         self.code = code
+        self.reason = reason or message
 
 
 class Interrupted(Exception):
@@ -18,6 +20,7 @@ class Interrupted(Exception):
 
     def __init__(self, signum):
         super().__init__(f"signal {signum}")
+        self.reason = str(self)
         self.signum = signum
         self.code = 128 + signum
 

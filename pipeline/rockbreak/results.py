@@ -7,7 +7,7 @@ from .errors import BAD_INPUT, RockbreakError
 from .fabric import frame_anisotropies
 from .history import read_history
 from .ledger import read_ledger
-from .run_directory import broken_in, plain
+from .run_directory import broken_in, plain, refusals_in
 from .sealed import open_sealed
 
 
@@ -42,6 +42,11 @@ class Results:
         if not self.breakable:
             return {}
         return {row["frame"]: broken_in(self.directory.split_file(row["frame"])) for row in self.frames}
+
+    @cached_property
+    def refused(self):
+        """Number of analyses that the splits refused."""
+        return sum(len(refusals_in(self.directory.split_file(k))) for k in self.broken)
 
     @cached_property
     def summary(self):

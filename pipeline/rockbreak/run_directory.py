@@ -163,3 +163,15 @@ def broken_in(split_file):
             return len(file["broken/parent"])
     except (OSError, KeyError) as error:
         raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error
+
+
+def refusals_in(split_file):
+    """(particle, reason) of every analysis that a split refused; none if it does not exist."""
+    if not split_file.exists():
+        return []
+    try:
+        with open_sealed(split_file) as file:
+            particles = [int(particle) for particle in file["refusals/particle"][:]] if "refusals" in file else []
+            return list(zip(particles, map(str, file["refusals/reason"].asstr()[:]))) if particles else []
+    except (OSError, KeyError) as error:
+        raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error

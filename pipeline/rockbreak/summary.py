@@ -36,6 +36,7 @@ def summarize(results):
         "particles_initial": first["particles"],
         "particles_final": last["particles"],
         "broken_total": sum(broken.values()) if results.breakable else None,
+        "refused_total": results.refused if results.breakable else None,
         "confining_pressure": pressure,
         "initial_void_ratio": at(history, "void_ratio", 0),
         "final_void_ratio": at(history, "void_ratio", -1),

@@ -130,6 +130,23 @@ def test_refusals_become_warnings_of_the_ledger(work):
     assert warning["source"] == "xfem" and warning["particle"] == 5 and "the mesh is too coarse" in warning["text"]
 
 
+def test_refusals_are_counted(work):
+    work.scene()
+    work.run()
+    assert json.loads(work.directory.summary_file.read_text())["refused_total"] == 1
+
+
+@pytest.mark.parametrize("mode", ["resident", "oneshot"])
+@pytest.mark.parametrize("fake, reason", [({"dem_dies_at": 2}, "dem: error: particle 7, frame 3: flew off"),
+                                          ({"xfem_error_at": 2}, "particle 3: singular matrix")])
+def test_a_childs_failure_comes_through_with_code_and_reason(work, mode, fake, reason):
+    work.scene(**fake)
+    process = work.run("--mode", mode)
+    assert process.returncode == 3 and reason in process.err
+    (end,) = work.events("end")
+    assert end["code"] == 3 and reason in end["reason"]
+
+
 def test_the_ledger_states_size_and_hashes_of_every_file(work):
     work.scene()
     work.run()

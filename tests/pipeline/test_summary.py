@@ -10,7 +10,7 @@ from rockbreak.results import Results
 from rockbreak.run_directory import RunDirectory
 
 KEYS = {
-    "schema", "case", "particles_initial", "particles_final", "broken_total", "confining_pressure",
+    "schema", "case", "particles_initial", "particles_final", "broken_total", "refused_total", "confining_pressure",
     "initial_void_ratio", "final_void_ratio", "void_ratios", "particles_at_strain", "unbalanced_force_at_rest",
     "lateral_stress_error_rms", "contacts_initial", "contacts_peak", "contacts_final", "peak_sin_phi", "peak_strain",
     "residual_sin_phi", "anisotropy_peak", "sin_phi_micro_peak", "solid_area_error", "momentum_error", "energy",

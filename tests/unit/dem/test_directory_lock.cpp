@@ -41,7 +41,7 @@ TEST_CASE("a run directory has one holder, and a driver's dem counts as the driv
   CHECK_FALSE(refused());
   CHECK_FALSE(refused());  // the driver holds it still
   const int other = open(directory.c_str(), O_RDONLY);
-  for (const std::string stale : {std::to_string(other), std::string("977"), std::string("-1"), std::string("x")}) {
+  for (const std::string& stale : {std::to_string(other), std::string("977"), std::string("-1"), std::string("x")}) {
     INFO(stale);
     setenv("ROCKBREAK_LOCK", stale.c_str(), 1);
     CHECK(refused());

@@ -81,6 +81,12 @@ std::map<std::string, Change> changes(const scratch::Folder& folder) {
       {"breakage.max_cracks", "2"},
       {"breakage.face_friction", "0.4"},
       {"breakage.literal", "true"},
+      {"guards.unbalanced_force", "0.2"},
+      {"guards.energy_residual", "0.1"},
+      {"guards.servo_error", "0.5"},
+      {"guards.overlap", "0.9"},
+      {"guards.steps", "1e10"},
+      {"guards.refusals", "continue"},
       {"output.durability", "every"},
       {"output.keep_frames", "10"},
   };
