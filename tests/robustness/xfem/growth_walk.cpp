@@ -41,10 +41,11 @@ constexpr Family kFamilies[] = {
 
 class Walk {
  public:
-  Walk(const Family& family, int nodes, std::int64_t number, Tally& tally)
+  Walk(const Family& family, int nodes, std::int64_t number, double friction, Tally& tally)
       : family_(family),
         number_(number),
         nodes_(nodes),
+        friction_(friction),
         random_(0x9e3779b97f4a7c15ull * (number + 1) + 7919 * nodes + 31 * std::strlen(family.name) + family.name[0]),
         tally_(tally),
         outline_(make_outline()),
@@ -53,7 +54,7 @@ class Walk {
         mesh_(model_.mesh()),
         patch_(random_.uniform() < 0.3 ? random_.uniform(0.02, 0.2) * std::sqrt(common::area(outline_)) : 0.0),
         loads_(make_loads()),
-        solver_(model_, loads_, patch_),
+        solver_(model_, loads_, patch_, friction_),
         rules_{HoekBrown{1.0, 25}, 0.1 * std::sqrt(common::area(outline_)), random_.uniform() < 0.2, {}} {}
 
   void run(int steps, int every);
@@ -73,6 +74,7 @@ class Walk {
   const Family& family_;
   const std::int64_t number_;
   const int nodes_;
+  const double friction_;
   common::Random random_;
   Tally& tally_;
   const common::Polygon outline_;
@@ -218,7 +220,7 @@ bool Walk::check(int every) {
   ++tally_.steps;
   state_ = solver_.solve(cracks_);
   if (every > 0 && tally_.steps % every == 0) {
-    const CrackedState alone = CrackedSolver(model_, loads_, patch_).solve(cracks_);
+    const CrackedState alone = CrackedSolver(model_, loads_, patch_, friction_).solve(cracks_);
     bool same = alone.solved == state_.solved && alone.u == state_.u && alone.q == state_.q &&
                 alone.stress.size() == state_.stress.size();
     for (std::size_t t = 0; same && t < alone.stress.size(); ++t) {
@@ -236,9 +238,13 @@ bool Walk::check(int every) {
     }
     return false;
   }
+  if (!state_.settled) {
+    fail(tally_.unsettled, "friction does not settle");
+    return false;
+  }
   const Residual residual = residual_of(model_, loads_, patch_, outline_, state_);
   if (!residual.is_finite) fail(tally_.not_finite, "not finite");
-  if (residual.scaled > kResidualLimit) fail(tally_.over_limit, "residual");
+  if (residual.scaled > (friction_ > 0 ? kFrictionResidualLimit : kResidualLimit)) fail(tally_.over_limit, "residual");
   if (residual.virial > kVirialLimit * residual.amplification) fail(tally_.virial_over_limit, "virial");
   if (residual.scaled > tally_.worst_residual) tally_.worst_walk = number_;
   tally_.worst_residual = std::max(tally_.worst_residual, residual.scaled);
@@ -328,6 +334,7 @@ void Tally::add(const Tally& other) {
   impure += other.impure;
   not_finite += other.not_finite;
   over_limit += other.over_limit;
+  unsettled += other.unsettled;
   virial_over_limit += other.virial_over_limit;
   turned += other.turned;
   closed += other.closed;
@@ -342,9 +349,9 @@ void Tally::add(const Tally& other) {
   }
 }
 
-Tally walk(const Family& family, int nodes, std::int64_t number, int steps, int every) {
+Tally walk(const Family& family, int nodes, std::int64_t number, int steps, int every, double friction) {
   Tally tally;
-  Walk(family, nodes, number, tally).run(steps, every);
+  Walk(family, nodes, number, friction, tally).run(steps, every);
   return tally;
 }
 

@@ -36,7 +36,8 @@ struct Tally {
   std::int64_t merged = 0;     ///< tips that ran into another crack
   std::int64_t impure = 0;     ///< states with other bits than those of a new solver
   std::int64_t not_finite = 0;
-  std::int64_t over_limit = 0;  ///< scaled residual above kResidualLimit
+  std::int64_t over_limit = 0;  ///< scaled residual above kResidualLimit, with friction kFrictionResidualLimit
+  std::int64_t unsettled = 0;   ///< friction found no state: such a particle is refused, its residual not looked at
   std::int64_t virial_over_limit = 0;
   std::int64_t turned = 0;  ///< states with more than 1e-10 of the load unbalanced, on a part that turns far
   std::int64_t closed = 0;  ///< states with faces in contact
@@ -46,17 +47,20 @@ struct Tally {
   std::int64_t most_functions = 0;
   std::vector<std::string> failures;  ///< cases, at most 20
 
-  std::int64_t wrong() const { return singular + impure + not_finite + over_limit + virial_over_limit; }
+  std::int64_t wrong() const { return singular + unsettled + impure + not_finite + over_limit + virial_over_limit; }
   void add(const Tally& other);
 };
 
 inline constexpr double kResidualLimit = 1e-12;
+/// The bounds on the shear settle to 1e-9 of the largest.
+inline constexpr double kFrictionResidualLimit = 1e-10;
 /// Below this the oracle of the whole system calls it loose too; the solver's own limit is a pivot of 1e-8.
 inline constexpr double kLooseEigenvalue = 1e-7;
 /// Times the amplification: a mean stress cannot be better than the displacements that it comes from.
 inline constexpr double kVirialLimit = 1e-14;
 
-/// One walk of at most `steps` steps. `every`: each so many steps are compared with a new solver, 0: none.
-Tally walk(const Family& family, int nodes, std::int64_t number, int steps, int every);
+/// One walk of at most `steps` steps. `every`: each so many steps are compared with a new solver, 0: none. `friction`:
+/// of closed faces.
+Tally walk(const Family& family, int nodes, std::int64_t number, int steps, int every, double friction = 0);
 
 }  // namespace growth_walks

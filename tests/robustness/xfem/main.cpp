@@ -22,6 +22,7 @@ struct Arguments {
   int nodes = 75;
   int every = 20;
   int threads = 1;
+  double friction = 0;
   std::vector<std::string> only;
   std::string case_name;
 };
@@ -39,7 +40,8 @@ Tally run_family(const Family& family, const Arguments& arguments, std::int64_t 
     std::vector<Tally> tallies(kBatch);
 #pragma omp parallel for schedule(dynamic)
     for (std::int64_t i = 0; i < kBatch; ++i) {
-      tallies[i] = walk(family, arguments.nodes, first + i, steps_of_walk(arguments.nodes), arguments.every);
+      tallies[i] =
+          walk(family, arguments.nodes, first + i, steps_of_walk(arguments.nodes), arguments.every, arguments.friction);
     }
     for (const Tally& tally : tallies) total.add(tally);
   }
@@ -48,10 +50,12 @@ Tally run_family(const Family& family, const Arguments& arguments, std::int64_t 
 
 void print(const std::string& name, const Tally& tally) {
   fmt::print(
-      "{:17} {:8} {:9} {:9} {:7} {:8} {:7} {:8} {:4} {:4.0e} {:9.1e} {:9.1e} {:6} {:9.1e} {:4}/{:4}/{:4}/{:4}/{:4}\n",
+      "{:17} {:8} {:9} {:9} {:7} {:8} {:7} {:8} {:4} {:4.0e} {:9.1e} {:9.1e} {:6} {:9.1e} "
+      "{:4}/{:4}/{:4}/{:4}/{:4}/{:4}\n",
       name, tally.walks, tally.steps, tally.separated, tally.hinged, tally.refused, tally.merged, tally.closed,
       tally.most_functions, tally.smallest_part, tally.worst_residual, tally.worst_over_load, tally.turned,
-      tally.worst_virial, tally.singular, tally.impure, tally.not_finite, tally.over_limit, tally.virial_over_limit);
+      tally.worst_virial, tally.singular, tally.impure, tally.not_finite, tally.over_limit, tally.virial_over_limit,
+      tally.unsettled);
 }
 
 }  // namespace
@@ -65,12 +69,13 @@ int main(int count, char** values) {
   app.add_option("--every", arguments.every, "compare each so many steps with a new solver, 0: none");
   app.add_option("--families", arguments.only, "these families only");
   app.add_option("--threads", arguments.threads, "threads");
+  app.add_option("--friction", arguments.friction, "of closed crack faces");
   app.add_option("--case", arguments.case_name, "one walk: FAMILY:NODES:NUMBER");
   CLI11_PARSE(app, count, values);
   omp_set_num_threads(arguments.threads);
   fmt::print("{:17} {:>8} {:>9} {:>9} {:>7} {:>8} {:>7} {:>8} {:>4} {:>5} {:>9} {:>9} {:>6} {:>9} {}\n", "family",
              "walks", "steps", "separated", "hinged", "refused", "merged", "closed", "most", "part", "residual",
-             "over load", "turned", "virial", "singular/impure/not finite/residual/virial");
+             "over load", "turned", "virial", "singular/impure/not finite/residual/virial/unsettled");
   Tally total;
   if (!arguments.case_name.empty()) {
     const std::size_t a = arguments.case_name.find(':');
@@ -81,7 +86,8 @@ int main(int count, char** values) {
       return 2;
     }
     const int nodes = std::atoi(arguments.case_name.c_str() + a + 1);
-    total = walk(*family, nodes, std::atoll(arguments.case_name.c_str() + b + 1), steps_of_walk(nodes), 1);
+    total = walk(*family, nodes, std::atoll(arguments.case_name.c_str() + b + 1), steps_of_walk(nodes), 1,
+                 arguments.friction);
     print(family->name, total);
   } else {
     std::vector<const Family*> chosen;
