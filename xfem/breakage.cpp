@@ -1,5 +1,7 @@
 #include "xfem/breakage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,7 +86,7 @@ class Analysis {
   }
   bool restore_cracks();
   bool solve();
-  bool balances(const Stress& mean) const;
+  double imbalance(const Stress& mean) const;
   std::optional<DrivenTip> driven(int crack, int end) const;
   bool grow_tips();
   bool settle(const TipStep& step, int crack);
@@ -161,15 +163,16 @@ bool Analysis::restore_cracks() {
   return true;
 }
 
-bool Analysis::balances(const Stress& mean) const {
+/// By how much a mean stress misses the virial, as a share of the loads times diameter over area.
+double Analysis::imbalance(const Stress& mean) const {
   const double off =
       std::max({std::abs(mean.xx - virial_.xx), std::abs(mean.yy - virial_.yy), std::abs(mean.xy - virial_.xy)});
-  return off <= kBalance * stress_scale_;
+  return off > 0 ? off / stress_scale_ : 0;
 }
 
 bool Analysis::solve() {
   state_ = solver_.solve(cracks_);
-  if (!state_.solved) refuse("the cracked system is singular: a part of the particle is loose");
+  if (!state_.solved) refuse("the cracked system is singular: a part of the particle is loose (" + state_.defect + ")");
   if (!state_.settled) refuse("friction on the closed crack faces did not settle");
   return state_.solved && state_.settled;
 }
@@ -338,14 +341,21 @@ BreakageResult Analysis::run() {
 
   if (!std::isfinite(result_.mean_stress.xx + result_.mean_stress.yy + result_.mean_stress.xy)) {
     refuse("the stress is not finite");
-  } else if (!balances(result_.mean_stress)) {
-    refuse("the stress does not balance the loads: the particle is too slender for its mesh");
+  } else if (const double off = imbalance(result_.mean_stress); !(off <= kBalance)) {
+    refuse(
+        fmt::format("the stress does not balance the loads, by {:.2g} of them, expected within {:.0e}: the particle "
+                    "is too slender for its mesh",
+                    off, kBalance));
   } else if (restore_cracks() && (critical.load_factor <= 1 || !cracks_.empty()) && solve()) {
     while (!finished_ && (grow_tips() || (!finished_ && start_next_crack()))) {
     }
     if (state_.solved) result_.mean_stress = mean_stress(mesh_, state_.stress);
-    if (state_.solved && !balances(result_.mean_stress))
-      refuse("the stress of the cracked particle does not balance the loads");
+    if (const double off = imbalance(result_.mean_stress); state_.solved && !(off <= kBalance)) {
+      refuse(
+          fmt::format("the stress of the cracked particle does not balance the loads, by {:.2g} of them, expected "
+                      "within {:.0e}",
+                      off, kBalance));
+    }
   }
   if (!finished_) {
     const bool failed_somewhere = !cracks_.empty() || critical.load_factor <= 1;

@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "xfem/interrupts.hpp"
+#include "xfem/refusal.hpp"
 
 namespace xfem {
 
@@ -67,6 +68,10 @@ const SplitService::Answer& SplitService::solve(const std::filesystem::path& fra
     throw common::Error(error.code(), fmt::format("{}: {}", frame_path.string(), error.what()));
   }
   for (const std::string& warning : solver_.warnings()) notify_("warning: " + warning);
+  for (const std::string& refusal :
+       keep_refusals(frame, previous_path ? &previous : nullptr, split, refusal_folder(out))) {
+    notify_(refusal);
+  }
 
   const auto write_start = std::chrono::steady_clock::now();
   {

@@ -26,7 +26,8 @@ class SplitService {
     PhaseSeconds seconds;  ///< of the solver's phases, and of reading and writing
     PhaseCounts counts;
   };
-  /// Solves the frame of one file and writes its split. Throws bad_input, io_failure.
+  /// Solves the frame of one file and writes its split; particles that are refused are told, and each of them stands in
+  /// a file of its own (refusal.hpp). Throws bad_input, io_failure.
   const Answer& solve(const std::filesystem::path& frame, const std::optional<std::filesystem::path>& previous,
                       const std::filesystem::path& out);
 

@@ -1,5 +1,7 @@
 #include "xfem/crack/cracked_solver.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -108,6 +110,7 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest
   state.q = Eigen::VectorXd::Zero(size);
   if (is_separated(mesh, cracks, enrichment)) {
     state.solved = false;
+    state.defect = "the cracks cut it off";
     return state;
   }
   if (size == 0) {
@@ -172,6 +175,13 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest
                                            ? solve_frictional_contact(schur, right, faces, penalty, face_friction_)
                                            : solve_face_contact(schur, right, faces, penalty);
   state.solved = contact.has_value();
+  if (!contact) {
+    const SpdCondition condition = condition_of(schur);
+    state.defect =
+        fmt::format("smallest pivot {:.2g}, expected above {:.0e}, at node {}; condition {:.2g} of {} scaled unknowns",
+                    condition.smallest_pivot, kSmallestPivot,
+                    condition.row < 0 ? -1 : enrichment.functions[condition.row / 2].node, condition.condition, size);
+  }
   if (contact) {
     state.q = std::move(contact->q);
     state.settled = contact->settled;

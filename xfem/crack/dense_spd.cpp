@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace xfem {
 namespace {
@@ -85,6 +86,69 @@ std::optional<Eigen::VectorXd> solve_spd(DenseSymmetric matrix, const Eigen::Vec
   // A pivot tells a singular matrix only roughly; a solution that has grown beyond its digits tells the rest.
   if (!(smallest_pivot * largest <= largest_right)) return std::nullopt;
   return x;
+}
+
+SpdCondition condition_of(DenseSymmetric matrix) {
+  const int n = matrix.size;
+  SpdCondition result;
+  std::vector<double> scale(n), sums(n, 0.0);
+  for (int i = 0; i < n; ++i) scale[i] = 1 / std::sqrt(matrix.at(i, i));
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n; ++j) {
+      matrix.at(i, j) *= scale[i] * scale[j];
+      sums[i] += std::abs(matrix.at(i, j));
+      if (j > i) sums[j] += std::abs(matrix.at(i, j));
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    const double pivot = matrix.at(k, k);
+    if (!(pivot >= result.smallest_pivot)) {
+      result.smallest_pivot = pivot;
+      result.row = k;
+    }
+    if (!(pivot > 0)) {
+      result.inverse_norm = result.condition = std::numeric_limits<double>::infinity();
+      return result;
+    }
+    const double root = 1 / std::sqrt(pivot);
+    for (int j = k; j < n; ++j) matrix.at(k, j) *= root;
+    for (int i = k + 1; i < n; ++i) {
+      for (int j = i; j < n; ++j) matrix.at(i, j) -= matrix.at(k, i) * matrix.at(k, j);
+    }
+  }
+  const auto solve = [&](std::vector<double> x) {
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < i; ++k) x[i] -= matrix.at(k, i) * x[k];
+      x[i] /= matrix.at(i, i);
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      for (int k = i + 1; k < n; ++k) x[i] -= matrix.at(i, k) * x[k];
+      x[i] /= matrix.at(i, i);
+    }
+    return x;
+  };
+  constexpr int kSolutions = 5;
+  std::vector<double> probe(n, 1.0 / n);
+  int tried = -1;
+  for (int solution = 0; solution < kSolutions; ++solution) {
+    std::vector<double> x = solve(probe);
+    double norm = 0;
+    for (double& value : x) {
+      norm += std::abs(value);
+      value = value < 0 ? -1 : 1;
+    }
+    result.inverse_norm = std::max(result.inverse_norm, norm);
+    const std::vector<double> gradient = solve(x);  // the matrix is symmetric
+    const auto steepest = std::max_element(gradient.begin(), gradient.end(),
+                                           [](double l, double r) { return std::abs(l) < std::abs(r); });
+    const int next = static_cast<int>(steepest - gradient.begin());
+    if (next == tried) break;
+    tried = next;
+    probe.assign(n, 0.0);
+    probe[next] = 1;
+  }
+  result.condition = result.inverse_norm * *std::max_element(sums.begin(), sums.end());
+  return result;
 }
 
 }  // namespace xfem

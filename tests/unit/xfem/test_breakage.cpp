@@ -241,6 +241,17 @@ TEST_CASE("What cannot be analysed is refused with its reason") {
   CHECK(broken_loads.status == ParticleStatus::refused);
 }
 
+TEST_CASE("A solution whose mean stress is not the virial of its forces is refused, with the size of the error") {
+  ParticleModel model = block();
+  const BreakageResult sound = analyse(model, opposite_forces(1e6), {}, without_floor());
+  CHECK(sound.status != ParticleStatus::refused);
+  // The forces act at the outline, the stress is that of the mesh: 1 % apart, so are the two.
+  for (Vec2& vertex : model.outline) vertex *= 1.01;
+  const BreakageResult off = analyse(model, opposite_forces(1e6), {}, without_floor());
+  CHECK(off.status == ParticleStatus::refused);
+  CHECK_THAT(off.reason, Catch::Contains("does not balance the loads, by") && Catch::Contains("expected within 1e-06"));
+}
+
 TEST_CASE("A refused particle keeps the cracks that it had") {
   const ParticleModel model = block();
   const Mesh& mesh = model.elastic.mesh();

@@ -156,3 +156,52 @@ TEST_CASE("signals end the resident service with their exit codes") {
     for (int end : {to_child[0], to_child[1], from_child[0], from_child[1]}) close(end);
   }
 }
+
+TEST_CASE("a refused particle is told, stands in a file of its own, and is refused alone for the same reason") {
+  const Workspace work("main_refused");
+  common::Frame frame = sample::frame();
+  const std::int64_t id = sample::kFirstCrushed;
+  REQUIRE(frame.contacts.b[2] == id);
+  frame.contacts.force[2].x() = 1.7e308;  // a number, but its stress is none
+  std::filesystem::create_directories(work.directory / "run/splits");
+  common::write_frame(work.directory / "frame.h5", frame, {});
+  common::Split previous;
+  previous.frame = frame.frame - 1;
+  previous.config_hash = common::config_hash(sample::scene(), common::UsedBy::xfem);
+  for (const std::int64_t cracked : {id, id + 1}) {
+    previous.particles.id.push_back(cracked);
+    previous.particles.status.push_back(common::ParticleStatus::arrested);
+    previous.particles.mean_stress.push_back({0, 0, 0});
+    previous.particles.min_safety_factor.push_back(1);
+    previous.particles.failure_mode.push_back(common::FailureMode::tension);
+    previous.cracks.particle.push_back(cracked);
+    previous.cracks.points.insert(previous.cracks.points.end(), {{-0.05, 0}, {0, 0.01}, {0.05, 0}});
+    previous.cracks.point_offset.push_back(static_cast<std::int64_t>(previous.cracks.points.size()));
+  }
+  common::write_split(work.directory / "previous.h5", previous, {});
+  const Outcome whole = run(
+      work.directory, work.solve("--previous " + work.at("previous.h5") + " --out " + work.at("run/splits/000007.h5")));
+  INFO(whole.err);
+  CHECK(whole.code == 0);
+  const std::string name = work.at("run/failure/frame_000007_particle_" + std::to_string(id));
+  const std::string command = "solve " + name + ".h5 --config CASE.yaml --previous " + name + "_previous.h5 --out ";
+  CHECK_THAT(whole.err,
+             Catch::Contains("particle " + std::to_string(id) + ": analysis refused: ") && Catch::Contains(command));
+  const common::Split split = common::read_split(work.directory / "run/splits/000007.h5");
+  REQUIRE(split.refusals.particle == std::vector<std::int64_t>{id});
+
+  const Outcome alone = run(work.directory, "solve " + name + ".h5 --config " + work.at("case.yaml") + " --previous " +
+                                                name + "_previous.h5 --out " + work.at("alone.h5"));
+  INFO(alone.err);
+  CHECK(alone.code == 0);
+  const common::Split own = common::read_split(work.directory / "alone.h5");
+  CHECK(own.refusals.particle == split.refusals.particle);
+  CHECK(own.refusals.reason == split.refusals.reason);
+  CHECK(own.cracks.particle == std::vector<std::int64_t>{id});  // what it had, and nobody else's
+
+  std::filesystem::remove_all(work.directory / "run/failure");
+  std::ofstream(work.directory / "run/failure") << "in the way";
+  const Outcome full = run(work.directory, work.solve("--out " + work.at("run/splits/000007.h5")));
+  CHECK(full.code == 0);
+  CHECK_THAT(full.err, Catch::Contains("could not be kept"));
+}

@@ -1,3 +1,4 @@
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -247,4 +248,38 @@ TEST_CASE("Scaling the diagonal keeps a system well conditioned over 28 decades"
   for (int i = 0; i < n; ++i) CHECK((*found)[i] * scale[i] == Approx(x[i]).epsilon(1e-11));
   matrix.at(3, 3) = 0;
   CHECK_FALSE(solve_spd(matrix, x));
+}
+
+TEST_CASE("The condition of a scaled system is told: exact for two unknowns, Hager's bound for more") {
+  for (const double a : {0.0, 0.5, -0.9, 0.999999}) {
+    DenseSymmetric matrix(2);  // diagonal 4 and 1e-20 before scaling
+    matrix.at(0, 0) = 4;
+    matrix.at(1, 1) = 1e-20;
+    matrix.at(0, 1) = a * 2e-10;
+    const SpdCondition found = condition_of(matrix);
+    CHECK(found.condition == Approx((1 + std::abs(a)) / (1 - std::abs(a))).epsilon(1e-8));
+    CHECK(found.smallest_pivot == Approx(1 - a * a).epsilon(1e-8));
+  }
+  const int n = 12;
+  Eigen::MatrixXd spd(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) spd(i, j) = 1.0 / (i + j + 1) + (i == j ? 1e-6 : 0.0);  // nearly Hilbert's matrix
+  }
+  DenseSymmetric matrix(n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n; ++j) matrix.at(i, j) = spd(i, j);
+  }
+  const Eigen::VectorXd scale = spd.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * spd * scale.asDiagonal();
+  const auto norm = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); };
+  const double exact = norm(scaled) * norm(scaled.inverse());
+  const SpdCondition found = condition_of(matrix);
+  CHECK(found.condition <= 1.001 * exact);
+  CHECK(found.condition >= exact / 3);
+  CHECK(found.condition >= 1 / found.smallest_pivot);
+
+  DenseSymmetric singular(2);
+  singular.at(0, 0) = singular.at(1, 1) = singular.at(0, 1) = 1;
+  CHECK(std::isinf(condition_of(singular).condition));
+  CHECK(condition_of(singular).row == 1);
 }
