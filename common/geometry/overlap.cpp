@@ -8,6 +8,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "common/geometry/clip_overlap.hpp"
@@ -24,7 +25,6 @@ constexpr int kLanes = 2;
 using Two = double __attribute__((vector_size(2 * sizeof(double))));
 using Wide = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Masks = long long __attribute__((vector_size(kLanes * sizeof(double))));
-using Loose = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(sizeof(double))));
 using Set = std::uint64_t;  ///< of vertices
 
 constexpr int kMaxFast = 64;
@@ -100,7 +100,11 @@ template <int kPadded>
 
 /// The vertices i+1, ... that follow those from i on; the first one follows the last one.
 [[gnu::always_inline]] inline Wide successors(const double* p, int i, int padded) {
-  if (i + kLanes < padded) return *reinterpret_cast<const Loose*>(p + i + 1);
+  if (i + kLanes < padded) {
+    Wide following;
+    std::memcpy(&following, p + i + 1, sizeof(following));
+    return following;
+  }
 #ifdef __AVX__
   return __builtin_shufflevector(wide(p + i), wide(p), 1, 2, 3, 4);
 #else
