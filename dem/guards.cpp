@@ -10,6 +10,7 @@ namespace dem {
 namespace {
 
 constexpr double kSlow = 0.01;          // inertial number up to which an assembly should be near rest
+constexpr double kShaken = 1000;        // steps after which nothing of a split is left
 constexpr double kUnitNormal = 1e-9;    // error of its squared length
 constexpr double kAreaRounding = 1e-9;  // of the smaller particle, by which an overlap may exceed it
 
@@ -161,7 +162,10 @@ void require_balanced_energy(const common::Scene& scene, const Engine& engine, c
 
 void require_rest(const common::Scene& scene, const std::vector<common::Column>& history, const Engine& engine) {
   if (!scene.effects.local_damping) return;
-  const double limit = scene.guards.unbalanced_force;
+  // Frames close together do not see the end of what a split shakes.
+  const std::vector<double>& step = rows(history, "step");
+  const double steps = std::max(1.0, step.back() - step.front());
+  const double limit = scene.guards.unbalanced_force * std::max(1.0, kShaken / steps);
   const std::vector<double>& unbalanced = rows(history, "unbalanced_force");
   const std::vector<double>& inertial = rows(history, "inertial_number");
   const double least = *std::min_element(unbalanced.begin(), unbalanced.end());
