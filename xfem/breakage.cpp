@@ -350,11 +350,11 @@ BreakageResult Analysis::run() {
     while (!finished_ && (grow_tips() || (!finished_ && start_next_crack()))) {
     }
     if (state_.solved) result_.mean_stress = mean_stress(mesh_, state_.stress);
-    if (const double off = imbalance(result_.mean_stress); state_.solved && !(off <= kBalance)) {
+    if (const double left = imbalance(result_.mean_stress); state_.solved && !(left <= kBalance)) {
       refuse(
           fmt::format("the stress of the cracked particle does not balance the loads, by {:.2g} of them, expected "
                       "within {:.0e}",
-                      off, kBalance));
+                      left, kBalance));
     }
   }
   if (!finished_) {

@@ -174,7 +174,7 @@ void bind_guards(Specification& keys, GuardOptions& guards) {
       "stop if it is never below this between two frames, with local damping and slow loading; at most 0.021 in "
       "sound runs");
   keys.number("guards.energy_residual", guards.energy_residual, kPositive, "-", UsedBy::neither,
-              "stop if it exceeds this share of boundary work and stored energy, with effect energy_ledger");
+              "stop if the ledger misses this share of boundary work and stored energy");
   keys.number("guards.servo_error", guards.servo_error, kPositive, "-", UsedBy::neither,
               "stop if the lateral stress is off its target by more than this between two frames, and comes no nearer");
   keys.number("guards.overlap", guards.overlap, kPositive, "-", UsedBy::neither,

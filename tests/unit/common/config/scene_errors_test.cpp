@@ -17,7 +17,7 @@ std::string error_of(const std::string& text, const Overrides& overrides = {}) {
 
 const std::string kSections =
     "seed, effects, material, assembly, contact, damping, gravity, mass_scaling, time_step, neighbours, preparation, "
-    "servo, shear, breakage, output";
+    "servo, shear, breakage, guards, output";
 const std::string kStiffnessUnit = " [N/m for mean_depth and potential, N/m^2 for area and foundation]";
 
 struct Case {
