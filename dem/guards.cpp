@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace dem {
 namespace {
 
 constexpr double kSlow = 0.01;          // inertial number up to which an assembly should be near rest
 constexpr double kShaken = 1000;        // steps after which nothing of a split is left
+constexpr double kFewSplit = 0.02;      // share of the particles that may split without shaking the whole sample
+constexpr double kUnstored = 1e-4;      // energy of a sample that nothing has loaded yet, over pressure times area
 constexpr double kUnitNormal = 1e-9;    // error of its squared length
 constexpr double kAreaRounding = 1e-9;  // of the smaller particle, by which an overlap may exceed it
 
@@ -127,8 +130,9 @@ void require_balanced_energy(const common::Scene& scene, const Engine& engine, c
                              double elastic) {
   const State& state = engine.state();
   const Particles& p = state.particles;
-  const double scale = std::max(std::abs(state.energy.boundary_work) + elastic + std::abs(state.energy.gravity_work),
-                                control.energy_at_start);
+  const double area = std::accumulate(p.area.begin(), p.area.end(), 0.0);
+  const double scale = std::max({std::abs(state.energy.boundary_work) + elastic + std::abs(state.energy.gravity_work),
+                                 control.energy_at_start, kUnstored * scene.preparation.confining_pressure * area});
   if (std::abs(residual) <= scene.guards.energy_residual * scale) return;
 
   std::string blamed;
@@ -160,12 +164,14 @@ void require_balanced_energy(const common::Scene& scene, const Engine& engine, c
                           {{"energy_residual", residual}, {"scale", scale}, {"limit", scene.guards.energy_residual}}});
 }
 
-void require_rest(const common::Scene& scene, const std::vector<common::Column>& history, const Engine& engine) {
+void require_rest(const common::Scene& scene, const std::vector<common::Column>& history, const Engine& engine,
+                  double split_share) {
   if (!scene.effects.local_damping) return;
-  // Frames close together do not see the end of what a split shakes.
+  // Frames close together do not see the end of what a split shakes; many splits at once let the sample collapse.
   const std::vector<double>& step = rows(history, "step");
   const double steps = std::max(1.0, step.back() - step.front());
-  const double limit = scene.guards.unbalanced_force * std::max(1.0, kShaken / steps);
+  const double limit =
+      scene.guards.unbalanced_force * std::max(1.0, kShaken / steps) * std::max(1.0, split_share / kFewSplit);
   const std::vector<double>& unbalanced = rows(history, "unbalanced_force");
   const std::vector<double>& inertial = rows(history, "inertial_number");
   const double least = *std::min_element(unbalanced.begin(), unbalanced.end());

@@ -256,7 +256,7 @@ class Run {
     const Shear stage(scene_, *engine_, control_);
     common::Frame frame = snapshot();
     if (frame.frame > 0) {
-      require_rest(scene_, frame.history, *engine_);
+      require_rest(scene_, frame.history, *engine_, split_share_);
       require_lateral_stress(scene_, frame.history);
     }
     frame.final = frame.frame >= stage.last_frame();
@@ -267,6 +267,7 @@ class Run {
     seconds_["write"] += seconds_since(write_begin);
     checkpoint_ = written.path;
     split_.clear();
+    split_share_ = 0;
     if (!is_replay_) remove_failure(options_.directory);  // the run got past it
     control_.next_frame += 1;
     engine_->restart();
@@ -296,6 +297,7 @@ class Run {
                                           split.frame_hash, frame_hash));
     }
     split_ = path;
+    split_share_ = static_cast<double>(split.broken.parent.size()) / static_cast<double>(split.particles.id.size());
     require_answers(scene_, split);
     if (split.broken.parent.empty()) return;
     const auto energy = [&] {
@@ -415,9 +417,10 @@ class Run {
   const RunPorts& ports_;
   std::string hash_;
   RunDirectory directory_;
-  bool is_replay_;       // in the directory that a failure has left
-  fs::path checkpoint_;  // newest file that a run could go on from
-  fs::path split_;       // applied since
+  bool is_replay_;          // in the directory that a failure has left
+  fs::path checkpoint_;     // newest file that a run could go on from
+  fs::path split_;          // applied since
+  double split_share_ = 0;  // of the particles that it broke
   History history_;
   Control control_;
   std::unique_ptr<Engine> engine_;

@@ -46,6 +46,7 @@ struct Rows {
   std::vector<double> unbalanced{0.3, 0.025, 0.4};
   double inertial = 1e-4;
   double steps = 1000;
+  double split_share = 0;
   std::vector<double> stress{2e6, 2e6, 2e6};
 };
 
@@ -145,7 +146,7 @@ TEST_CASE("a run that rattles from frame to frame is stopped, one that is shaken
   dem::State state = boxes();
   const dem::Engine engine(scene, state);
   const auto found = [&](const common::Scene& s, const Rows& rows) {
-    return finding_of([&] { dem::require_rest(s, history_of(rows), engine); });
+    return finding_of([&] { dem::require_rest(s, history_of(rows), engine, rows.split_share); });
   };
   CHECK(found(scene, {}).guard.empty());
   Rows rattling;
@@ -167,6 +168,12 @@ TEST_CASE("a run that rattles from frame to frame is stopped, one that is shaken
   rattling.steps = 0;
   CHECK(found(scene, rattling).guard.empty());
   rattling.steps = 1000;
+  // Nor does a sample of which much is split find rest at once.
+  rattling.split_share = 0.02;
+  CHECK(found(scene, rattling).guard == "unbalanced_force");
+  rattling.split_share = 0.027;
+  CHECK(found(scene, rattling).guard.empty());
+  rattling.split_share = 0;
   // Without damping nothing comes to rest, and fast loading is not quasi-static.
   CHECK(found(scene_with(false, false), rattling).guard.empty());
   rattling.inertial = 0.02;
@@ -175,6 +182,7 @@ TEST_CASE("a run that rattles from frame to frame is stopped, one that is shaken
 
 TEST_CASE("a ledger that does not close stops the run, and the fastest particle is named") {
   common::Scene scene = scene_with(true, true);
+  scene.preparation.confining_pressure = 1;
   dem::State state = boxes();
   dem::Engine engine(scene, state);
   dem::Control control;
@@ -199,6 +207,12 @@ TEST_CASE("a ledger that does not close stops the run, and the fastest particle 
   const dem::Finding finding = found(scene, 7);
   CHECK(finding.particles == std::vector<std::int64_t>{1});
   CHECK_THAT(finding.text, Contains("residual is 7 J") && Contains("50 J, is in particle 1"));
+  // A sample that nothing touches yet stores nothing, and its first contact little: 1e-4 of 2 MPa times 5 m^2 is 1000
+  // J.
+  scene.guards.energy_residual = 0.05;
+  scene.preparation.confining_pressure = 2e6;
+  CHECK(found(scene, 49.9).guard.empty());
+  CHECK(found(scene, 50.1).guard == "energy_residual");
 }
 
 TEST_CASE("a lateral stress that is lost stops the run, one that is on its way does not") {
