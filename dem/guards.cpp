@@ -165,13 +165,11 @@ void require_balanced_energy(const common::Scene& scene, const Engine& engine, c
 }
 
 void require_rest(const common::Scene& scene, const std::vector<common::Column>& history, const Engine& engine,
-                  double split_share) {
+                  std::int64_t steps, double split_share) {
   if (!scene.effects.local_damping) return;
   // Frames close together do not see the end of what a split shakes; many splits at once let the sample collapse.
-  const std::vector<double>& step = rows(history, "step");
-  const double steps = std::max(1.0, step.back() - step.front());
-  const double limit =
-      scene.guards.unbalanced_force * std::max(1.0, kShaken / steps) * std::max(1.0, split_share / kFewSplit);
+  const double shaken = kShaken / std::max(1.0, static_cast<double>(steps));
+  const double limit = scene.guards.unbalanced_force * std::max(1.0, shaken) * std::max(1.0, split_share / kFewSplit);
   const std::vector<double>& unbalanced = rows(history, "unbalanced_force");
   const std::vector<double>& inertial = rows(history, "inertial_number");
   const double least = *std::min_element(unbalanced.begin(), unbalanced.end());

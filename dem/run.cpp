@@ -76,14 +76,14 @@ class Run {
   RunEnd run() {
     if (options_.resume) {
       if (std::optional<common::Frame> frame = directory_.newest_frame(hash_)) {
-        directory_.write_case(scene_, RunDirectory::Existing::kept);
+        write_case(RunDirectory::Existing::kept);
         return resume_shear(*frame);
       }
     }
     if (!scene_.preparation.from.empty()) {
       start_from_sample();
       // A refused sample leaves no trace; nothing else was made with a case.yaml that stands here.
-      directory_.write_case(scene_, RunDirectory::Existing::replaced);
+      write_case(RunDirectory::Existing::replaced);
     } else if (const auto end = prepare()) {
       return *end;
     }
@@ -93,6 +93,11 @@ class Run {
     record();
     const std::optional<RunEnd> end = write_frame_and_exchange();
     return end ? *end : shear();
+  }
+
+  // The case of a failure names its sample by a relative path, which a scene that was read no longer has.
+  void write_case(RunDirectory::Existing existing) const {
+    if (!is_replay_) directory_.write_case(scene_, existing);
   }
 
   void make_engine(State state) { engine_ = std::make_unique<Engine>(scene_, std::move(state), options_.threads); }
@@ -132,14 +137,14 @@ class Run {
     std::optional<common::Frame> found;
     if (options_.resume) {
       if (const auto sample = directory_.prepared_sample(hash_)) {
-        directory_.write_case(scene_, RunDirectory::Existing::kept);
+        write_case(RunDirectory::Existing::kept);
         take_sample(*sample);
         return std::nullopt;
       }
       found = directory_.newest_preparation(hash_, checkpoint);
     }
     // Without anything that was made with it, a case.yaml may be that of another scene.
-    directory_.write_case(scene_, found ? RunDirectory::Existing::kept : RunDirectory::Existing::replaced);
+    write_case(found ? RunDirectory::Existing::kept : RunDirectory::Existing::replaced);
     if (found) {
       control_ = read_control(*found);
       make_engine(to_state(*found));
@@ -221,6 +226,7 @@ class Run {
     make_engine(to_state(frame));
     control_.next_frame = static_cast<double>(frame.frame + 1);
     checkpoint_ = directory_.frame(frame.frame);
+    checkpoint_step_ = frame.step;
     if (frame.final) return RunEnd::finished;
     if (options_.until_frame && frame.frame >= *options_.until_frame) return RunEnd::paused;
     if (scene_.effects.breakage) {
@@ -256,7 +262,7 @@ class Run {
     const Shear stage(scene_, *engine_, control_);
     common::Frame frame = snapshot();
     if (frame.frame > 0) {
-      require_rest(scene_, frame.history, *engine_, split_share_);
+      require_rest(scene_, frame.history, *engine_, frame.step - checkpoint_step_, split_share_);
       require_lateral_stress(scene_, frame.history);
     }
     frame.final = frame.frame >= stage.last_frame();
@@ -266,6 +272,7 @@ class Run {
         common::write_frame(directory_.frame(frame.frame), frame, scene_.output.durability);
     seconds_["write"] += seconds_since(write_begin);
     checkpoint_ = written.path;
+    checkpoint_step_ = frame.step;
     split_.clear();
     split_share_ = 0;
     if (!is_replay_) remove_failure(options_.directory);  // the run got past it
@@ -417,10 +424,11 @@ class Run {
   const RunPorts& ports_;
   std::string hash_;
   RunDirectory directory_;
-  bool is_replay_;          // in the directory that a failure has left
-  fs::path checkpoint_;     // newest file that a run could go on from
-  fs::path split_;          // applied since
-  double split_share_ = 0;  // of the particles that it broke
+  bool is_replay_;                    // in the directory that a failure has left
+  fs::path checkpoint_;               // newest file that a run could go on from
+  std::int64_t checkpoint_step_ = 0;  // of the newest frame
+  fs::path split_;                    // applied since
+  double split_share_ = 0;            // of the particles that it broke
   History history_;
   Control control_;
   std::unique_ptr<Engine> engine_;

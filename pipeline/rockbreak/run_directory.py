@@ -87,7 +87,8 @@ class RunDirectory:
 
 
 def lock_directory(path, program, holders=None):
-    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the returned file holds the lock until it and all its heirs are closed."""
+    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the returned
+    file holds the lock until it and all its heirs are closed."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         file = open(path / ".lock", "w", encoding="utf-8")

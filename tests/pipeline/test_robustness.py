@@ -95,6 +95,9 @@ def test_numbers_are_read_by_their_paths(tmp_path):
     assert value_of("summary.json:a.b", tmp_path, "") == -4
     assert value_of("summary.json:a.b:max_abs - 1 / 3", tmp_path, "") == 1
     assert value_of("summary.json:a.b:count=1", tmp_path, "") == 1
+    assert value_of("summary.json:a.b:at=1", tmp_path, "") == -4
+    with pytest.raises(NoNumber, match="has 2 numbers"):
+        value_of("summary.json:a.b:at=2", tmp_path, "")
     assert value_of("stdout:x", tmp_path, '{"x": 2.5}') == 2.5
     with pytest.raises(NoNumber, match="expected first, last"):
         value_of("summary.json:a.b:median", tmp_path, "")

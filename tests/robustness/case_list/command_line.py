@@ -51,7 +51,7 @@ def chosen(cases, names):
     for name in names:
         if not any(means(name, case) for case in cases):
             raise CaseError(f"{name}: no case has this name, expected a part ({', '.join(PARTS)}), a pattern or one of: "
-                            + ", ".join(case.name for case in cases))
+                            + "; ".join(case.name for case in cases))
     return [case for case in cases if not names or any(means(name, case) for name in names)]
 
 

@@ -3,7 +3,8 @@
     FILE:NAME[:REDUCTION]    NAME a dataset, a root attribute (@name) or a key of a JSON file (a.b.c)
 FILE is relative to the case's folder; `history` stands for the history of all frames, `frames/last.h5` for the newest
 frame (and `splits/last.h5` for the newest split), `stdout` for the JSON that the last command printed.
-REDUCTION: last (default), first, min, max, max_abs, sum, mean, size, or count=VALUE. Two paths, or a path and a number,
+REDUCTION: last (default), first, min, max, max_abs, sum, mean, size, count=VALUE, or at=INDEX (from 0, rows one after
+another). Two paths, or a path and a number,
 may be joined by ` / `, ` - ` or ` + `, worked off from left to right.
 """
 import json
@@ -46,8 +47,13 @@ def term(word, out, stdout):
         raise NoNumber(f"{word}: found {values.dtype}, expected numbers")
     if reduction.startswith("count="):
         return float(np.sum(values == float(reduction.removeprefix("count="))))
+    if reduction.startswith("at="):
+        index = int(reduction.removeprefix("at="))
+        if not 0 <= index < values.size:
+            raise NoNumber(f"{word}: has {values.size} numbers")
+        return float(values.flat[index])
     if reduction not in REDUCTIONS:
-        raise NoNumber(f"{word}: found {reduction}, expected " + ", ".join([*REDUCTIONS, "count=VALUE"]))
+        raise NoNumber(f"{word}: found {reduction}, expected " + ", ".join([*REDUCTIONS, "count=VALUE", "at=INDEX"]))
     if values.size == 0:
         if reduction in ("size", "sum"):
             return 0.0

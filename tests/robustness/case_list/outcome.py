@@ -96,10 +96,15 @@ def measure(case, run, stdout, outcome):
 
 def interval(least, most):
     if least is None:
-        return f"at most {shown(most)}"
+        return f"at most {exactly(most)}"
     if most is None:
-        return f"at least {shown(least)}"
-    return shown(least) if least == most else f"{shown(least)} to {shown(most)}"
+        return f"at least {exactly(least)}"
+    return exactly(least) if least == most else f"{exactly(least)} to {exactly(most)}"
+
+
+def exactly(bound):
+    """As few digits as give the very number: four would make 1 of 0.999999."""
+    return shown(bound) if float(shown(bound)) == bound else repr(bound)
 
 
 def program(word):

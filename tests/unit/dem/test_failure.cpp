@@ -125,6 +125,23 @@ TEST_CASE("what a stopped run leaves fails again alone, and the run goes on to t
   }
 }
 
+TEST_CASE("a run from another run's sample leaves its sample too, wherever the failure is moved") {
+  const Folder root;
+  REQUIRE(failure_of(small_scene(), root.path / "whole").empty());
+  common::Scene scene = small_scene();
+  scene.preparation.from = (root.path / "whole/prepared/sample.h5").string();
+  scene.guards.overlap = 1e-7;
+  const fs::path directory = root.path / "stopped";
+  const std::vector<std::string> said = failure_of(scene, directory);
+  REQUIRE(said.size() == 3);
+  CHECK(record_of(directory).at("checkpoint") == "prepared/sample.h5");
+  CHECK(replay_of(directory) == std::vector<std::string>{said[0]});
+  fs::rename(directory / "failure", root.path / "failure");
+  fs::remove_all(directory);
+  fs::remove_all(root.path / "whole");
+  for (int time = 0; time < 2; ++time) CHECK(replay_of(root.path) == std::vector<std::string>{said[0]});
+}
+
 TEST_CASE("a refused particle stops the run at its split, before the next step") {
   const Folder root;
   common::Scene scene = small_scene();
