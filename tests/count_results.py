@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Sums the JUnit files that ctest and pytest wrote, shows what failed, and ends with `N passed, N failed`.
+"""Sums the JUnit files of a folder, shows what failed, and ends with `N passed, N failed`.
 
-usage: tests/count_results.py DIR --codes CTEST_EXIT_CODE PYTEST_EXIT_CODE
+usage: tests/count_results.py DIR [--only PREFIX...]
+Each run left NAME.code (its exit code), NAME.log, and NAME.xml if it came to its tests.
 """
 import sys
 import xml.etree.ElementTree as xml
@@ -28,9 +29,12 @@ def count(path):
     return passed, failed, skipped
 
 
-def main(directory, codes):
+def main(directory, only):
     passed = failed = 0
-    for name, code in zip(("ctest", "pytest"), codes):
+    for path in sorted(directory.glob("*.code")):
+        name, code = path.stem, int(path.read_text())
+        if only and not name.startswith(only):
+            continue
         counted = count(directory / f"{name}.xml")
         log = directory / f"{name}.log"
         if counted is None or (code != 0 and not counted[1]) or counted[0] + len(counted[1]) == 0:
@@ -50,4 +54,4 @@ def main(directory, codes):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), [int(code) for code in sys.argv[3:5]]))
+    sys.exit(main(Path(sys.argv[1]), tuple(sys.argv[3:])))

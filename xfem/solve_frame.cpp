@@ -1,13 +1,13 @@
 #include "xfem/solve_frame.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <thread>
 
 #include "common/error.hpp"
 #include "common/geometry/chord_split.hpp"
@@ -357,7 +357,7 @@ FrameSolver::FrameSolver(const common::Scene& scene, int threads)
   implementation_->cache.emplace(scene.breakage.nodes, implementation_->constants,
                                  implementation_->parameters.initiation_radius);
   implementation_->config_hash = common::config_hash(scene, common::UsedBy::xfem);
-  implementation_->threads = threads > 0 ? threads : omp_get_num_procs();
+  implementation_->threads = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
 }
 
 FrameSolver::~FrameSolver() = default;
