@@ -16,7 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 def executable(name):
     """Path of `dem` or `xfem`: in $ROCKBREAK_BIN if that is set, else in build/release."""
-    folder = Path(os.environ.get("ROCKBREAK_BIN") or REPOSITORY / "build" / "release")
+    folder = Path(os.environ.get("ROCKBREAK_BIN") or REPOSITORY / "build" / "release").resolve()
     path = folder / name
     if not os.access(path, os.X_OK):
         raise RockbreakError(BAD_INPUT, f"{path}: no such executable; build it with pipeline/setup")

@@ -1,4 +1,5 @@
 """Nothing is lost, and what is damaged is refused: short parts of what tests/robustness/lost does by the hundred."""
+import subprocess
 import sys
 
 import h5py
@@ -13,6 +14,7 @@ from rockbreak.run_directory import RunDirectory, is_valid, write_text
 from rockbreak.sealed import open_sealed
 
 sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))
+from lost_faults import Sweep  # noqa: E402
 from lost_kills import Campaign  # noqa: E402
 
 FULL_DEVICE = "/dev/full"  # every write to it finds no space
@@ -25,6 +27,24 @@ def test_killed_at_random_and_resumed_a_run_is_the_uninterrupted_one(tmp_path):
         campaign.one_run(12)
     assert campaign.faults == []
     assert campaign.kills == 12 and campaign.runs >= 1 and len(campaign.counts["phase"]) >= 2
+
+
+def test_a_call_that_fails_ends_the_run_with_the_name_of_its_file_and_nothing_half(tmp_path):
+    sweep = Sweep(tmp_path, durability="every")
+    for name, kind, n in (("dem", "nospace", 2), ("dem", "quota", 30), ("xfem", "device", 4), ("driver", "nospace", 9),
+                          ("dem", "short", 12), ("xfem", "again", 2), ("xfem", "kill", 10)):
+        assert sweep.one(name, kind, n, "resident")
+    assert sweep.faults == [] and sum(sweep.counts.values()) == 7
+
+
+def test_random_damage_is_refused_by_name_or_read_as_what_was_written(tmp_path):
+    run = tmp_path / "run"
+    subprocess.run([REPOSITORY / "build" / "release" / "dem", "run",
+                    REPOSITORY / "tests" / "robustness" / "golden" / "scene.yaml", "--out", run, "--until-frame", "0"],
+                   check=True, capture_output=True)
+    found = subprocess.run([REPOSITORY / "build" / "release" / "tests" / "damage", run / "frames" / "000000.h5",
+                            "--count", "400"], capture_output=True, text=True, check=False)
+    assert found.returncode == 0 and "400 copies, 0 wrong" in found.stdout, found.stdout
 
 
 @pytest.fixture
