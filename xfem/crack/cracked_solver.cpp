@@ -177,10 +177,12 @@ CrackedState CrackedSolver::solve(std::span<const Crack> cracks, double smallest
   state.solved = contact.has_value();
   if (!contact) {
     const SpdCondition condition = condition_of(schur);
-    state.defect =
-        fmt::format("smallest pivot {:.2g}, expected above {:.0e}, at node {}; condition {:.2g} of {} scaled unknowns",
-                    condition.smallest_pivot, kSmallestPivot,
-                    condition.row < 0 ? -1 : enrichment.functions[condition.row / 2].node, condition.condition, size);
+    state.defect = fmt::format(
+        "smallest pivot {:.2g} at node {}, expected above {:.0e}; condition {:.2g} of {} scaled unknowns, expected "
+        "below "
+        "{:.0e}",
+        condition.smallest_pivot, condition.row < 0 ? -1 : enrichment.functions[condition.row / 2].node, kSmallestPivot,
+        condition.condition, size, 1 / kSmallestPivot);
   }
   if (contact) {
     state.q = std::move(contact->q);
