@@ -55,13 +55,13 @@ void require_balanced_energy(const common::Scene& scene, const Engine& engine, c
                              double elastic);
 
 /// Judges the rows since the last frame. With local damping and slow loading (inertial number below 0.01) the
-/// unbalanced force has fallen below guards.unbalanced_force: its smallest value between two frames is below 0.002 in
-/// sound runs at 0.02 /s (100 particles or more, four laws), 0.021 at 0.2 /s, above 0.037 in ones whose time step or
-/// servo is unstable, while their stresses stay plausible. If `steps`, those since the last frame, are less than 1000,
-/// the limit is 1000 / steps times as large, for a split shakes that long: of 40 splits in 100 particles 0.11 remains
-/// after 140 steps, 0.025 after 290. Where a share of more than 0.02 of the particles was split since the last frame
-/// (`split_share`) the limit is that much higher: the sample collapses and is built anew (measured: up to 0.04 over
-/// 1400 steps with a share of 0.11). Names the particle that is worst off now.
+/// unbalanced force has fallen below guards.unbalanced_force: its smallest value between two frames is, in sound runs
+/// at 0.02 /s, below 0.002 without breakage (100 particles or more, four laws) and 0.012 with it, 0.021 at 0.2 /s;
+/// above 0.037 in ones whose time step or servo is unstable, while their stresses stay plausible. If `steps`, those
+/// since the last frame, are less than 1000, the limit is 1000 / steps times as large, for a split shakes that long: of
+/// 40 splits in 100 particles 0.11 remains after 140 steps, 0.025 after 290. Where a share of more than 0.02 of the
+/// particles was split since the last frame (`split_share`) the limit is that much higher: the sample collapses and is
+/// built anew (measured: up to 0.04 over 1400 steps with a share of 0.11). Names the particle that is worst off now.
 void require_rest(const common::Scene& scene, const std::vector<common::Column>& history, const Engine& engine,
                   std::int64_t steps, double split_share);
 
