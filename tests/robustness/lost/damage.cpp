@@ -85,7 +85,7 @@ class Damage {
 
 std::string read(const fs::path& path, bool is_frame) {
   if (is_frame) return common::read_frame(path).payload_hash;
-  return common::read_split(path).frame_hash;
+  return common::read_split(path).payload_hash;
 }
 
 }  // namespace
