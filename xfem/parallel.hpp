@@ -1,6 +1,8 @@
 // Work on many particles side by side, where one particle's failure must not stop the others.
 #pragma once
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -14,6 +16,14 @@
 #include "common/error.hpp"
 
 namespace xfem {
+
+/// Processors that this process may use: fewer than the machine has where a scheduler or taskset says so; at least 1.
+inline int available_processors() {
+  cpu_set_t mask;
+  if (sched_getaffinity(0, sizeof mask, &mask) != 0)
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return CPU_COUNT(&mask);
+}
 
 /// Calls body(k) for k = 0 ... count - 1 on `threads` threads (fewer if the system does not give as many). What body(k)
 /// throws as common::Error becomes the text of failure(k); anything else is thrown on after the last call.

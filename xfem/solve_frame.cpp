@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <thread>
 
 #include "common/error.hpp"
 #include "common/geometry/chord_split.hpp"
@@ -357,7 +356,7 @@ FrameSolver::FrameSolver(const common::Scene& scene, int threads)
   implementation_->cache.emplace(scene.breakage.nodes, implementation_->constants,
                                  implementation_->parameters.initiation_radius);
   implementation_->config_hash = common::config_hash(scene, common::UsedBy::xfem);
-  implementation_->threads = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+  implementation_->threads = threads > 0 ? threads : available_processors();
 }
 
 FrameSolver::~FrameSolver() = default;
