@@ -95,6 +95,13 @@ ChordSplit split_by_chord(PolygonView polygon, const Vec2& first, const Vec2& la
                     "pieces must have an area",
                     first.x(), first.y(), last.x(), last.y(), left, right));
   }
+  for (const Polygon* part : {&split.left, &split.right}) {
+    if (const std::string defect = outline_defect(*part); !defect.empty()) {
+      throw numerical_failure(
+          fmt::format("chord split: the chord from ({}, {}) to ({}, {}) leaves a piece that is none: {}", first.x(),
+                      first.y(), last.x(), last.y(), defect));
+    }
+  }
   return split;
 }
 

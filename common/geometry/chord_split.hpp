@@ -15,7 +15,7 @@ struct ChordSplit {
 /// a vertex is moved to that vertex, so that no sliver edge is made. The two chord vertices are bitwise the same in
 /// both pieces, and the areas sum to the parent's within 1e-12 relative + 1e-15 diameter^2 (rounding of a sliver's new
 /// vertices). Both pieces are convex.
-/// Throws numerical_failure if both ends lie on one edge or a piece would have no area.
+/// Throws numerical_failure if both ends lie on one edge, or a piece would have no area or not be an outline.
 ChordSplit split_by_chord(PolygonView polygon, const Vec2& first, const Vec2& last, double snap = 1e-9);
 
 }  // namespace common
