@@ -39,7 +39,9 @@ bool same_file(int a, int b) {
 
 DirectoryLock::DirectoryLock(const std::filesystem::path& directory) {
   const std::filesystem::path path = directory / ".lock";
-  own_ = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
+  do {
+    own_ = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
+  } while (own_ < 0 && errno == EINTR);
   if (own_ < 0) {
     throw common::io_failure(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
   }

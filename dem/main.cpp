@@ -31,6 +31,8 @@ void catch_signals() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  // A file beyond the limit on sizes is to be an error that names it.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 // People get a line now and then; a driver gets every event.

@@ -26,6 +26,8 @@ void exit_on_signals() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A file beyond the limit on sizes is to be an error that names it.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 NoInterruption::NoInterruption() {

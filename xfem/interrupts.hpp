@@ -1,4 +1,6 @@
 // SIGINT and SIGTERM end the process with exit code 130 or 143, but never in the middle of writing a file.
+// Beyond the limit on the size of files a write fails with EFBIG, as every failing write does, instead of ending the
+// process.
 #pragma once
 
 namespace xfem {

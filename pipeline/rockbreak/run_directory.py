@@ -93,8 +93,8 @@ def lock_directory(path, program, holders=None):
         path.mkdir(parents=True, exist_ok=True)
         file = open(path / ".lock", "w", encoding="utf-8")
     except OSError as error:
-        raise RockbreakError(IO_FAILURE, f"{path}: cannot be used as a directory of {program}: {error.strerror}"
-                             ) from error
+        raise RockbreakError(IO_FAILURE, f"{path}: cannot be used as a directory of {program}: "
+                             f"{error.filename}: {error.strerror}") from error
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

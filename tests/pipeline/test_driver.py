@@ -236,6 +236,27 @@ def test_a_locked_directory_is_refused(work):
     assert process.returncode == 2 and "another pipeline/run" in process.err
 
 
+def test_a_second_driver_is_refused_and_the_first_goes_on_undisturbed(work):
+    work.scene(frames=40, slow=0.02)
+    first = work.start()
+    wait_for(work.directory.split_file(0))
+    second = work.run("--resume")
+    assert second.returncode == 2 and "another pipeline/run" in second.err
+    _, err = first.communicate(timeout=60)
+    assert first.returncode == 0, err
+    assert len(work.events("frame")) == 40 and len(work.events("start")) == 1
+
+
+@pytest.mark.parametrize("left", ["", "4194303\n"], ids=["empty", "with_a_number"])
+def test_a_stale_lock_holds_nobody_up(work, left):
+    """Of a driver that was killed, or of a copy of its directory: the file is there, nobody holds it."""
+    work.scene()
+    work.out.mkdir()
+    (work.out / ".lock").write_text(left)
+    assert work.run().returncode == 0
+    assert len(work.events("frame")) == 4
+
+
 @pytest.mark.parametrize("ending, code", [("exit 4", 4), ("exit 3", 3), ("kill -9 $$", 137)])
 def test_the_exit_code_of_explain_passes_through(work, monkeypatch, ending, code):
     work.out.mkdir()

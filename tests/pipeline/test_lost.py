@@ -14,6 +14,7 @@ from rockbreak.run_directory import RunDirectory, is_valid, write_text
 from rockbreak.sealed import open_sealed
 
 sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))
+from lost_damage import KINDS, PROGRAMS, Bench  # noqa: E402
 from lost_faults import Sweep  # noqa: E402
 from lost_kills import Campaign  # noqa: E402
 
@@ -29,12 +30,31 @@ def test_killed_at_random_and_resumed_a_run_is_the_uninterrupted_one(tmp_path):
     assert campaign.kills == 12 and campaign.runs >= 1 and len(campaign.counts["phase"]) >= 2
 
 
+def test_ended_by_signals_at_random_and_resumed_a_run_is_the_uninterrupted_one(tmp_path):
+    campaign = Campaign(tmp_path, 2, ["resident", "oneshot"], report=False, overrides=["shear.axial_strain=0.02"],
+                        signals=["term", "int"])
+    campaign.uninterrupted()
+    while campaign.kills < 6 and not campaign.faults:
+        campaign.one_run(6)
+    assert campaign.faults == []
+    assert campaign.kills == 6 and set(campaign.counts["signal"]) == {"term", "int"}
+
+
+def test_damaged_files_are_refused_made_anew_or_read_as_written_by_each_program(tmp_path):
+    bench = Bench(tmp_path, 1)
+    for n, kind in enumerate(KINDS):
+        bench.one(PROGRAMS[n % 3], kind)
+    bench.one("report", "bit flipped")
+    assert bench.faults == [] and sum(bench.counts.values()) == len(KINDS) + 1
+    assert bench.counts["report: refused"] == 1
+
+
 def test_a_call_that_fails_ends_the_run_with_the_name_of_its_file_and_nothing_half(tmp_path):
     sweep = Sweep(tmp_path, durability="every")
-    for name, kind, n in (("dem", "nospace", 2), ("dem", "quota", 30), ("xfem", "device", 4), ("driver", "nospace", 9),
+    for name, kind, n in (("dem", "nospace", 2), ("dem", "again", 3), ("driver", "nospace", 4), ("xfem", "device", 4), ("driver", "nospace", 9),
                           ("dem", "short", 12), ("xfem", "again", 2), ("xfem", "kill", 10)):
         assert sweep.one(name, kind, n, "resident")
-    assert sweep.faults == [] and sum(sweep.counts.values()) == 7
+    assert sweep.faults == [] and sum(sweep.counts.values()) == 8
 
 
 def test_random_damage_is_refused_by_name_or_read_as_what_was_written(tmp_path):

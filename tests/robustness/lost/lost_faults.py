@@ -34,8 +34,9 @@ def build(folder):
 
 
 class Sweep:
-    def __init__(self, folder, report=False, durability="none", say=print):
-        self.folder, self.report, self.durability, self.say = folder, report, durability, say
+    def __init__(self, folder, report=False, durability="none", say=print, overrides=()):
+        self.folder, self.report, self.say = folder, report, say
+        self.overrides = [f"output.durability={durability}", *overrides]
         self.library = build(folder)
         self.out = folder / "faulty" / "run"
         self.faults, self.counts = [], Counter()
@@ -44,7 +45,7 @@ class Sweep:
         self.expected = results(reference)
 
     def start(self, out, resume, mode="resident", environment=None):
-        arguments = command(out, mode, resume, self.report, [f"output.durability={self.durability}"])
+        arguments = command(out, mode, resume, self.report, self.overrides)
         arguments[1] = str(SCENE)
         return Started(arguments, self.folder / "messages.txt", environment)
 
@@ -116,17 +117,20 @@ class Sweep:
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="tests/robustness/lost/faults")
     parser.add_argument("--processes", default="dem,xfem,driver")
-    parser.add_argument("--kinds", default="nospace,device,short,again,kill", help=", ".join(KINDS))
+    parser.add_argument("--kinds", default=",".join(KINDS), help="of faults")
     parser.add_argument("--modes", default="resident")
     parser.add_argument("--every", type=int, default=1, help="of the calls, only every so many-th")
     parser.add_argument("--durability", default="every", help="of the scene; `every` brings fsync into the sweep")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
+                        help="of the scene, for example --set shear.axial_strain=0.006: fewer frames")
     parser.add_argument("--report", action="store_true", help="with the report and its figures")
     parser.add_argument("--out", type=Path, default=REPOSITORY / "build" / "lost" / "faults")
     options = parser.parse_args(arguments)
     folder = options.out.resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    sweep = Sweep(folder, options.report, options.durability, lambda text: print(text, flush=True))
+    sweep = Sweep(folder, options.report, options.durability, lambda text: print(text, flush=True),
+                  options.overrides)
     sweep.all(options.processes.split(","), options.kinds.split(","), options.modes.split(","), options.every)
     for name, count in sorted(sweep.counts.items()):
         print(f"{name}: {count}")

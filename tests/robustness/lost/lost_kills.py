@@ -1,7 +1,7 @@
 """The campaign of kills: who is killed and when, what must hold after each kill and at the end of each run.
 
-A victim is dem, xfem, the driver alone, or the whole process group, by SIGKILL. The moment is drawn uniformly over three
-quarters of the uninterrupted run's time, every fourth over its start alone; a resumed run is killed again until one gets
+A victim is dem, xfem, the driver alone, or the whole process group, by SIGKILL, or by SIGTERM or SIGINT if so told. The
+moment is drawn uniformly over three quarters of the uninterrupted run's time, every fourth over its start alone; a resumed run is killed again until one gets
 to its end. The mode is drawn anew for each start.
 """
 import argparse
@@ -19,15 +19,15 @@ from lost_runs import (REPOSITORY, RunDirectory, Started, command, differences, 
 VICTIMS = ("dem", "xfem", "driver", "group")
 START_SECONDS = 1.0        # in which every fourth kill falls
 PATIENCE = 60.0            # for a driver whose child was killed
-SIGNALLED = {128 + signal.SIGKILL}
+SIGNALS = {"kill": signal.SIGKILL, "term": signal.SIGTERM, "int": signal.SIGINT}
 
 
 class Campaign:
-    def __init__(self, folder, seed, modes, report, overrides=(), say=print):
+    def __init__(self, folder, seed, modes, report, overrides=(), say=print, signals=("kill",)):
         self.folder, self.modes, self.report, self.overrides, self.say = folder, modes, report, overrides, say
-        self.random = random.Random(seed)
+        self.random, self.signals = random.Random(seed), signals
         self.out = folder / "killed" / "run"  # the name of a run stands in its tables
-        self.counts = {"victim": Counter(), "phase": Counter(), "mode": Counter()}
+        self.counts = {"victim": Counter(), "phase": Counter(), "mode": Counter(), "signal": Counter()}
         self.kills = self.starts = self.runs = 0
         self.slowest_release = 0.0
         self.faults = []
@@ -51,20 +51,21 @@ class Campaign:
         self.say(f"WRONG: {self.faults[-1]}")
 
     def kill(self, run):
-        """Waits for the moment, kills the victim; False if the run ended before."""
+        """Waits for the moment, kills the victim. Returns the signal, None if the run ended before."""
         longest = START_SECONDS if self.random.random() < 0.25 else 0.75 * self.seconds
         moment = time.monotonic() + self.random.uniform(0, longest)
-        victim = self.random.choice(VICTIMS)
+        victim, sent = self.random.choice(VICTIMS), self.random.choice(self.signals)
         while run.process.poll() is None:
             if time.monotonic() >= moment:
                 target = {**run.children(), "driver": run.pid, "group": -run.pid}.get(victim)
-                if target is not None and kill_now(target):
+                if target is not None and kill_now(target, SIGNALS[sent]):
                     self.counts["victim"][victim] += 1
-                    return True
+                    self.counts["signal"][sent] += 1
+                    return SIGNALS[sent]
             time.sleep(0.001)
-        return False
+        return None
 
-    def after_kill(self, run, before):
+    def after_kill(self, run, before, signum):
         """Nobody is left, nothing is gone, nothing has changed."""
         try:
             code = run.process.wait(PATIENCE)
@@ -72,8 +73,10 @@ class Campaign:
             self.wrong("the driver goes on without its child")
             os.killpg(run.pid, signal.SIGKILL)
             code = run.process.wait()
-        if code not in SIGNALLED | {-signal.SIGKILL, 0}:
-            self.wrong(f"exit code {code}: {run.log.read_text()[-500:]}")
+        if code not in (128 + signum, -signum, 0):
+            self.wrong(f"{signum.name}: exit code {code}: {run.log.read_text()[-500:]}")
+        if "Traceback" in run.log.read_text(errors="replace"):
+            self.wrong(f"{signum.name}: {run.log.read_text(errors='replace')[-1500:]}")
         released = seconds_until_free(self.out)
         if released is None:
             self.wrong(f"somebody holds the directory: {processes_in(self.out)}")
@@ -87,6 +90,8 @@ class Campaign:
         gone = [name for name, value in before.items() if files.get(name) != value]
         if gone:
             self.wrong(f"gone or changed: {gone}")
+        if signum != signal.SIGKILL and temporary_files(self.out):
+            self.wrong(f"{signum.name}: left behind: {temporary_files(self.out)}")
         return files
 
     def check_loss(self, run, files, checkpoint):
@@ -110,11 +115,11 @@ class Campaign:
             mode = self.random.choice(self.modes)
             begin = time.monotonic()
             run = self.start(self.out, mode, resume)
-            killed = self.kills < enough and self.kill(run)
-            if killed:
+            signum = self.kill(run) if self.kills < enough else None
+            if signum is not None:
                 self.kills += 1
                 self.counts["mode"][mode] += 1
-                new = self.after_kill(run, files)
+                new = self.after_kill(run, files, signum)
                 self.check_loss(run, files, checkpoint)
                 phase = phase_of(self.out) if self.out.exists() else "before the first checkpoint"
                 self.counts["phase"][phase] += 1
@@ -155,9 +160,9 @@ def missing_events(out):
     return sorted(name for name, value in payloads.items() if known.get(name) != value)
 
 
-def kill_now(target):
+def kill_now(target, signum):
     try:
-        os.killpg(-target, signal.SIGKILL) if target < 0 else os.kill(target, signal.SIGKILL)
+        os.killpg(-target, signum) if target < 0 else os.kill(target, signum)
     except ProcessLookupError:
         return False
     return True
@@ -168,6 +173,7 @@ def main(arguments=None):
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--modes", default="resident,oneshot", help="drawn from for each start")
+    parser.add_argument("--signals", default="kill", help="drawn from for each kill: " + ", ".join(SIGNALS))
     parser.add_argument("--no-report", action="store_true", help="end each run with its summary")
     parser.add_argument("--out", type=Path, default=REPOSITORY / "build" / "lost" / "kills")
     options = parser.parse_args(arguments)
@@ -175,7 +181,8 @@ def main(arguments=None):
 
     shutil.rmtree(options.out, ignore_errors=True)
     options.out.mkdir(parents=True)
-    campaign = Campaign(options.out, options.seed, options.modes.split(","), not options.no_report)
+    campaign = Campaign(options.out, options.seed, options.modes.split(","), not options.no_report,
+                        signals=options.signals.split(","))
     campaign.uninterrupted()
     print(f"uninterrupted: {campaign.seconds:.1f} s, {len(campaign.expected)} results", flush=True)
     while campaign.kills < options.kills and len(campaign.faults) < 20:
