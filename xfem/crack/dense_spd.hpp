@@ -30,10 +30,10 @@ std::optional<Eigen::VectorXd> solve_spd(DenseSymmetric matrix, const Eigen::Vec
 struct SpdCondition {
   double smallest_pivot = 1;  ///< of the scaled matrix, up to the first that is not positive; its smallest eigenvalue
                               ///< is no larger, so that its condition is at least 1 / smallest_pivot
-  int row = -1;             ///< of that pivot
-  double inverse_norm = 0;  ///< 1-norm of the inverse of the scaled matrix, Hager's estimate (a lower bound);
-                            ///< infinite without a factor
-  double condition = 0;     ///< of the scaled matrix in the 1-norm
+  int row = -1;               ///< of that pivot
+  double inverse_norm = 0;    ///< 1-norm of the inverse of the scaled matrix, Hager's estimate (a lower bound);
+                              ///< infinite without a factor
+  double condition = 0;       ///< of the scaled matrix in the 1-norm
 };
 
 /// Hager 1984, Higham 1988: the 1-norm of an inverse from a few solutions with its factor. For messages: it costs about
