@@ -32,7 +32,7 @@ using Contents = std::map<std::string, Item>;
 /// Hex XXH3-128 over every item outside `provenance` except "@payload_hash", in the order of the paths' bytes.
 /// The hashed bytes are, for each item without separators: path, one zero byte, type, one zero byte, rank (uint64),
 /// each dimension (uint64), then Item::bytes. Unsigned integers are little-endian. Items of type "other" are left out.
-/// pipeline/rockbreak/payload_hash.py does the same.
+/// pipeline/rockbreak/run/payload_hash.py does the same.
 std::string payload_hash(const Contents& contents);
 
 /// How an array element lies in a file: its scalar type and the dimensions after the first.

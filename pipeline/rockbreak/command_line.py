@@ -4,13 +4,13 @@ import sys
 import time
 from pathlib import Path
 
-from .driver import Options, drive
+from .run.driver import Options, drive
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
-from .ledger import Ledger, read_ledger
-from .progress import make_progress
-from .results import Results
-from .run_directory import RunDirectory
-from .summary import wall_seconds, write_summary
+from .run.ledger import Ledger, read_ledger
+from .run.progress import make_progress
+from .run.results import Results
+from .run.run_directory import RunDirectory
+from .run.summary import wall_seconds, write_summary
 
 
 class Parser(argparse.ArgumentParser):
@@ -85,7 +85,7 @@ def conclude(directory, with_report):
         with Ledger(directory.ledger_file) as ledger:
             ledger.write("summary", path=directory.summary_file.name)
         return
-    from .report import write_report  # matplotlib is slow to load: only where figures are made
+    from .report.page import write_report  # matplotlib is slow to load: only where figures are made
     begin = time.perf_counter()
     write_report([results], directory.report_file)
     with Ledger(directory.ledger_file) as ledger:
@@ -104,7 +104,7 @@ def report(arguments=None):
     options = parser.parse_args(arguments)
 
     def work():
-        from .report import write_report
+        from .report.page import write_report
         runs = [Results(RunDirectory(path)) for path in options.directories]
         for one in runs:
             write_summary(one.directory, one.summary)

@@ -5,7 +5,7 @@ HDF5 1.10 crashes, hangs or reads something else over damaged metadata; common/i
 import h5py
 
 from .errors import IO_FAILURE, RockbreakError
-from .payload_hash import xxh3_128
+from .run.payload_hash import xxh3_128
 
 MAGIC = b"RBSEAL01"
 SEAL_BYTES = len(MAGIC) + 16

@@ -18,7 +18,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "pipeline")]
 import synthetic  # noqa: E402
 from fake_explain import resolved  # noqa: E402
-from rockbreak.run_directory import RunDirectory, attributes, broken_in, is_valid  # noqa: E402
+from rockbreak.run.run_directory import RunDirectory, attributes, broken_in, is_valid  # noqa: E402
 
 
 def install(folder):

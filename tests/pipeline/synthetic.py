@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import yaml
 
-from rockbreak.payload_hash import payload_hash
+from rockbreak.run.payload_hash import payload_hash
 from rockbreak.sealed import SEAL_BYTES, seal_of
 
 CASE = {

@@ -8,12 +8,12 @@ import pytest
 import yaml
 
 from conftest import REPOSITORY
-from rockbreak import biaxial_test
-from rockbreak.accuracy_measures import number_measure
-from rockbreak.accuracy_numbers import beyond, cheapest_good, floors_of, ladder_of
-from rockbreak.accuracy_study import Knob, read_study
+from rockbreak.campaign import biaxial_test
+from rockbreak.accuracy.measures import number_measure
+from rockbreak.accuracy.numbers import beyond, cheapest_good, floors_of, ladder_of
+from rockbreak.accuracy.study import Knob, read_study
 from rockbreak.errors import RockbreakError
-from rockbreak.plan import make_plan
+from rockbreak.campaign.plan import make_plan
 from synthetic import CASE
 from test_campaign import Workplace
 

@@ -13,11 +13,11 @@ import pytest
 import yaml
 
 from conftest import REPOSITORY
-from rockbreak import laboratory_errors as errors
-from rockbreak.accuracy_study import read_study
-from rockbreak.child import executable
+from rockbreak.campaign import laboratory_errors as errors
+from rockbreak.accuracy.study import read_study
+from rockbreak.run.child import executable
 from rockbreak.errors import RockbreakError
-from rockbreak.plan import make_plan
+from rockbreak.campaign.plan import make_plan
 from synthetic import seal
 
 LAB = REPOSITORY / "configs" / "lab"

@@ -13,12 +13,12 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
-from rockbreak import biaxial_test as kind
-from rockbreak.campaign import read_campaign
-from rockbreak.campaign_tables import numbers_of, scatter
+from rockbreak.campaign import biaxial_test as kind
+from rockbreak.campaign.table import read_campaign
+from rockbreak.campaign.tables import numbers_of, scatter
 from rockbreak.errors import RockbreakError
-from rockbreak.plan import make_plan
-from rockbreak.run_directory import RunDirectory, attributes, is_valid
+from rockbreak.campaign.plan import make_plan
+from rockbreak.run.run_directory import RunDirectory, attributes, is_valid
 from synthetic import CASE
 
 TWINS = {"breakable": {"effects": CASE["effects"]}, "solid": {"effects": CASE["effects"][:-1]}}

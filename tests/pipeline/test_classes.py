@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import synthetic
-from rockbreak.classes import (STRESS_LIMITS, force_classes, held_stresses, large_displacements, particle_stresses,
+from rockbreak.measures.classes import (STRESS_LIMITS, force_classes, held_stresses, large_displacements, particle_stresses,
                                read_contact_state, stress_classes, two_contacts)
 
 

@@ -9,8 +9,8 @@ import time
 import pytest
 
 from conftest import REPOSITORY
-from rockbreak.child import executable
-from rockbreak.run_directory import RunDirectory, attributes
+from rockbreak.run.child import executable
+from rockbreak.run.run_directory import RunDirectory, attributes
 
 SCENE = REPOSITORY / "configs" / "demo.yaml"
 SMALL = ["assembly.particles=120", "material.sigma_ci=80e6", "shear.axial_strain=0.02", "breakage.interval=0.002",

@@ -12,11 +12,11 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
-from rockbreak.cases import explained
+from rockbreak.campaign.cases import explained
 from rockbreak.errors import RockbreakError
-from rockbreak.ledger import read_ledger
-from rockbreak.payload_hash import xxh3_128
-from rockbreak.run_directory import RunDirectory, attributes
+from rockbreak.run.ledger import read_ledger
+from rockbreak.run.payload_hash import xxh3_128
+from rockbreak.run.run_directory import RunDirectory, attributes
 from synthetic import CASE
 
 

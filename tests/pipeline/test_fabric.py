@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from rockbreak.fabric import fit_anisotropies
+from rockbreak.measures.fabric import fit_anisotropies
 from synthetic import contacts_of_known_anisotropy
 
 

@@ -10,7 +10,7 @@ from conftest import REPOSITORY
 
 sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "golden"))
 import golden  # noqa: E402
-from rockbreak.child import executable  # noqa: E402
+from rockbreak.run.child import executable  # noqa: E402
 
 BINARIES = REPOSITORY / "build" / "release"
 

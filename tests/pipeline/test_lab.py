@@ -9,10 +9,10 @@ import time
 import pytest
 
 from conftest import REPOSITORY
-from rockbreak import lab_table
+from rockbreak.lab import table as lab_table
 from rockbreak.errors import RockbreakError
-from rockbreak.lab_table import table_rows, text_table
-from rockbreak.lab_tests import LabRun, plan_tests
+from rockbreak.lab.table import table_rows, text_table
+from rockbreak.lab.tests import LabRun, plan_tests
 
 BLOCK = "test: confined\nspecimen: {width: 0.25, height: 0.5}\nmesh: {nodes: 75}\nloading: {largest: 1}\n"
 

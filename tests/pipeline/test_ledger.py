@@ -3,7 +3,7 @@ import json
 import pytest
 
 from rockbreak.errors import RockbreakError
-from rockbreak.ledger import Ledger, read_ledger, seconds_per_phase
+from rockbreak.run.ledger import Ledger, read_ledger, seconds_per_phase
 
 
 def test_events_come_back_in_order(tmp_path):

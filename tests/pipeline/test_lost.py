@@ -9,8 +9,8 @@ import synthetic
 from conftest import REPOSITORY
 from rockbreak.command_line import is_concluded
 from rockbreak.errors import IO_FAILURE, RockbreakError
-from rockbreak.ledger import Ledger, read_ledger
-from rockbreak.run_directory import RunDirectory, is_valid, write_text
+from rockbreak.run.ledger import Ledger, read_ledger
+from rockbreak.run.run_directory import RunDirectory, is_valid, write_text
 from rockbreak.sealed import open_sealed
 
 sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))

@@ -10,9 +10,9 @@ import time
 import pytest
 
 from conftest import REPOSITORY
-from rockbreak.child import executable
+from rockbreak.run.child import executable
 from rockbreak.errors import IO_FAILURE
-from rockbreak.run_directory import RunDirectory, is_valid
+from rockbreak.run.run_directory import RunDirectory, is_valid
 
 sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))
 from lost_runs import command, differences, immutable_files, processes_in, results, temporary_files  # noqa: E402

@@ -3,10 +3,10 @@ import pytest
 import yaml
 
 import synthetic
-from rockbreak import paper
-from rockbreak.paper_rows import LABELS, paper_rows
-from rockbreak.results import Results
-from rockbreak.run_directory import RunDirectory
+from rockbreak.paper import numbers as paper
+from rockbreak.paper.rows import LABELS, paper_rows
+from rockbreak.run.results import Results
+from rockbreak.run.run_directory import RunDirectory
 
 
 def test_classes_of_forces_add_up_to_contacts_and_classes_of_stresses_to_particles():

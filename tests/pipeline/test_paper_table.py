@@ -6,12 +6,12 @@ import pytest
 import yaml
 
 import synthetic
-from rockbreak import paper
-from rockbreak.class_limits import best_limits, misfit
-from rockbreak.classes import three_classes
-from rockbreak.paper_table import write
-from rockbreak.paper_trends import trends
-from rockbreak.paper_verdicts import NOT_REPRODUCED, REPRODUCED, UNDECIDABLE, verdict
+from rockbreak.paper import numbers as paper
+from rockbreak.paper.class_limits import best_limits, misfit
+from rockbreak.measures.classes import three_classes
+from rockbreak.paper.table import write
+from rockbreak.paper.trends import trends
+from rockbreak.paper.verdicts import NOT_REPRODUCED, REPRODUCED, UNDECIDABLE, verdict
 
 STARTS = {"paper": 0.30, "void_ratio_e1": 0.21, "void_ratio_e4": 0.302}
 

@@ -6,9 +6,9 @@ import subprocess
 import h5py
 
 from conftest import REPOSITORY
-from rockbreak.child import executable
-from rockbreak.ledger import read_ledger
-from rockbreak.run_directory import RunDirectory, refusals_in
+from rockbreak.run.child import executable
+from rockbreak.run.ledger import read_ledger
+from rockbreak.run.run_directory import RunDirectory, refusals_in
 
 SLAB = "[[0,0],[1,0],[1,0.006],[0,0.006]]"
 STONE = "[[1,0],[0.309,0.951],[-0.809,0.588],[-0.809,-0.588],[0.309,-0.951]]"

@@ -6,7 +6,7 @@ import pytest
 
 import synthetic
 from conftest import REPOSITORY
-from rockbreak.tables import warnings
+from rockbreak.report.tables import warnings
 
 
 @pytest.fixture(scope="module")

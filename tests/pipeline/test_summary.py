@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import synthetic
-from rockbreak.history import running_mean
-from rockbreak.results import Results
-from rockbreak.run_directory import RunDirectory
+from rockbreak.run.history import running_mean
+from rockbreak.run.results import Results
+from rockbreak.run.run_directory import RunDirectory
 
 KEYS = {
     "schema", "case", "particles_initial", "particles_final", "broken_total", "refused_total", "confining_pressure",

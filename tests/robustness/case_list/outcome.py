@@ -6,7 +6,7 @@ import subprocess
 import sys
 from dataclasses import dataclass, field
 
-from rockbreak.child import executable
+from rockbreak.run.child import executable
 
 from . import REPOSITORY
 from .case_file import one_line

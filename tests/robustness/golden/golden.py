@@ -19,8 +19,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
-from rockbreak.payload_hash import xxh3_128  # noqa: E402
-from rockbreak.run_directory import RunDirectory  # noqa: E402
+from rockbreak.run.payload_hash import xxh3_128  # noqa: E402
+from rockbreak.run.run_directory import RunDirectory  # noqa: E402
 from rockbreak.sealed import open_sealed  # noqa: E402
 
 GOLDEN = HERE / "golden.json"

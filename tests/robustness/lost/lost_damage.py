@@ -10,8 +10,8 @@ from collections import Counter
 from pathlib import Path
 
 from lost_runs import HERE, REPOSITORY, RunDirectory, command, differences, immutable_files, results
-from rockbreak.child import executable
-from rockbreak.run_directory import attributes, is_valid
+from rockbreak.run.child import executable
+from rockbreak.run.run_directory import attributes, is_valid
 
 SCENE = HERE.parent / "golden" / "scene.yaml"
 SEAL_BYTES = 24

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from lost_runs import (HERE, REPOSITORY, Started, command, differences, immutable_files, processes_in, results,
                        seconds_until_free, temporary_files)
-from rockbreak.run_directory import is_valid
+from rockbreak.run.run_directory import is_valid
 
 SCENE = HERE.parent / "golden" / "scene.yaml"  # the smallest
 PROCESSES = {"dem": "dem", "xfem": "xfem", "driver": "python3"}

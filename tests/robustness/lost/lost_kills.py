@@ -153,7 +153,7 @@ class Campaign:
 
 def missing_events(out):
     """Frames and splits that the ledger does not have with their present hash."""
-    from rockbreak.ledger import read_ledger
+    from rockbreak.run.ledger import read_ledger
     known = {event["path"]: event["payload_hash"] for event in read_ledger(RunDirectory(out).ledger_file)
              if event["event"] in ("frame", "split")}
     payloads = {name: value for name, value in results(out).items() if name.startswith(("frames/", "splits/"))}

@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 SCENE = HERE / "scene.yaml"
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
-from rockbreak.run_directory import RunDirectory, attributes  # noqa: E402
+from rockbreak.run.run_directory import RunDirectory, attributes  # noqa: E402
 
 WITH_TIMES = ("wall_seconds", "cpu_seconds")  # of summary.json
 TIMED_FIGURE = "phases.png"

@@ -14,11 +14,11 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
-from rockbreak.child import executable  # noqa: E402
-from rockbreak.history import read_history, shear_rows  # noqa: E402
-from rockbreak.ledger import read_ledger  # noqa: E402
-from rockbreak.payload_hash import xxh3_128  # noqa: E402
-from rockbreak.run_directory import RunDirectory  # noqa: E402
+from rockbreak.run.child import executable  # noqa: E402
+from rockbreak.run.history import read_history, shear_rows  # noqa: E402
+from rockbreak.run.ledger import read_ledger  # noqa: E402
+from rockbreak.run.payload_hash import xxh3_128  # noqa: E402
+from rockbreak.run.run_directory import RunDirectory  # noqa: E402
 from rockbreak.sealed import open_sealed  # noqa: E402
 
 SECONDS_BETWEEN = 0.5

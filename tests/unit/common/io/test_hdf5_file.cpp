@@ -198,7 +198,7 @@ TEST_CASE("h5py reads the files, and Python computes the same payload hash") {
       "assert s[\"broken/path\"].shape == (1, 2, 2) and s[\"work/solved\"][0] == 3\n"
       "assert s[\"particles/status\"].dtype == np.int32 and np.isnan(s[\"particles/min_safety_factor\"][0])\n",
       (directory / "f.h5").string() + " " + (directory / "s.h5").string()));
-  CHECK(std::system(("/usr/bin/python3 " ROCKBREAK_SOURCE_DIR "/pipeline/rockbreak/payload_hash.py " +
+  CHECK(std::system(("/usr/bin/python3 " ROCKBREAK_SOURCE_DIR "/pipeline/rockbreak/run/payload_hash.py " +
                      (directory / "f.h5").string() + " " + (directory / "s.h5").string() + " " +
                      (directory / "e.h5").string() + " > /dev/null")
                         .c_str()) == 0);

@@ -1,0 +1,69 @@
+"""`pipeline/campaign`: arguments, messages, exit codes."""
+import shlex
+import sys
+from pathlib import Path
+
+from .table import read_campaign
+from .carry_out import carry_out, exit_code
+from .tables import run_rows, write_csv
+from ..command_line import Parser, guarded, positive
+from ..errors import RockbreakError
+from .plan import make_plan
+
+
+def add_campaign_arguments(parser):
+    parser.add_argument("--out", type=Path, required=True, help="directory of the campaign")
+    parser.add_argument("-j", "--jobs", type=positive, default=1, metavar="N", help="local processes (default 1)")
+    parser.add_argument("--threads", type=positive, help="threads of dem and of xfem in each process")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
+                        help="a key of the scene for all runs")
+    parser.add_argument("--dry-run", action="store_true", help="print what would run, and run nothing")
+
+
+def campaign(arguments=None):
+    parser = Parser(prog="pipeline/campaign", description="A table of runs, each one command in its own directory. "
+                    "Finished runs are kept, interrupted ones go on, changed tables run only what is new. The path of "
+                    "campaign.html is all that it writes to stdout.")
+    parser.add_argument("campaign", type=Path, help="for example configs/campaign_nonbreakable.yaml")
+    add_campaign_arguments(parser)
+    options = parser.parse_args(arguments)
+
+    def work():
+        table = read_campaign(options.campaign, options.overrides)
+        plan = make_plan(table, options.out, options.threads)
+        if options.dry_run:
+            print_plan(plan)
+            return
+        seconds = carry_out(plan, parser.prog, options.jobs)
+        conclude(table, plan, seconds)
+
+    return guarded(parser.prog, work, go_on="the same command")
+
+
+def conclude(table, plan, seconds):
+    """Tables and pages, then the error that a failed run stands for."""
+    from .report import write_campaign_report  # matplotlib is slow to load
+    write_csv(plan.out / "campaign.csv", run_rows(table, plan, seconds))
+    finished = [run.out for run in plan.runs if run.summary]
+    if table.compare == "paper" and finished:
+        from ..paper.table import write
+        write(finished, plan.out)
+    print(write_campaign_report(table, plan, seconds))
+    raise_failures(plan)
+
+
+def raise_failures(plan):
+    failed = [run for run in plan.runs if run.failure]
+    if failed:
+        lines = "\n".join(f"  {run.name} (exit code {run.code}): {run.failure}" for run in failed)
+        raise RockbreakError(exit_code(plan), f"{len(failed)} of {len(plan.runs)} runs failed; the same command tries "
+                             f"them again:\n{lines}")
+
+
+def print_plan(plan):
+    """One line per process: what it is, whether it is there, its command."""
+    for sample in plan.samples():
+        print(f"{'kept' if sample.is_finished() else 'new'}\tsample\t{shlex.join(sample.command)}")
+    for run in plan.runs:
+        print(f"{'kept' if run.is_finished() else 'new'}\trun\t{shlex.join(run.command)}")
+    sys.stdout.flush()

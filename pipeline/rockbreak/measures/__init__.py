@@ -1,0 +1,1 @@
+"""Micromechanical measures of a contact state and of a run."""

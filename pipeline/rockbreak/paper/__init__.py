@@ -1,0 +1,1 @@
+"""The paper's numbers, and runs beside them."""

@@ -1,0 +1,120 @@
+"""The report's numbers as text: headline, summary table with the paper's values, checks, warnings."""
+from collections import Counter
+
+from ..paper import numbers as paper
+from ..run.ledger import kind_of
+
+SERVO_TOLERANCE = 0.02      # rms of the lateral stress error
+AREA_TOLERANCE = 1e-12      # relative change of the total solid area
+REST_TOLERANCE = 1e-3       # unbalanced force before shear
+INERTIA_TOLERANCE = 1e-3    # inertial number
+ENERGY_TOLERANCE = 0.001    # residual over boundary work
+
+
+def number(value, form="{:.3f}"):
+    return "–" if value is None else form.format(value)
+
+
+def headline(run):
+    s = run.summary
+    tiles = [(f"{s['particles_initial']} → {s['particles_final']}", "particles")]
+    if run.breakable:
+        tiles.append((str(s["broken_total"]), "broken"))
+    return tiles + [
+        (f"{run.frames[-1]['axial_strain']:.1%}", "axial strain"),
+        (number(s["peak_sin_phi"]), f"peak sin φ at {number(s['peak_strain'], '{:.1%}')}"),
+        (number(s["residual_sin_phi"]), "residual sin φ"),
+        (f"{number(s['initial_void_ratio'])} → {number(s['final_void_ratio'])}", "void ratio"),
+        (number(s["wall_seconds"]["total"], "{:.0f} s"), "wall time"),
+    ]
+
+
+def published(run):
+    """The paper's values for this very run, by the label of a row; empty for other scenes."""
+    if not paper.applies_to(run.case):
+        return {}
+    contacts = paper.CONTACTS_2MPA[run.breakable]
+    values = {"contacts, start": contacts[0.0], "contacts, end": contacts[0.173],
+              "void ratio, start": paper.INITIAL_VOID_RATIO,
+              "void ratio, end": paper.FINAL_VOID_RATIO[run.breakable][2e6]}
+    if run.breakable:
+        values |= {f"particles at {strain:.1%}": count for strain, count in paper.PARTICLES_2MPA_BREAKABLE.items()}
+        values["broken"] = paper.PARTICLES_2MPA_BREAKABLE[0.173] - paper.PARTICLES
+    return values
+
+
+def summary_rows(run):
+    """Label -> text."""
+    s, energy = run.summary, run.summary["energy"]
+    megajoule = {key: None if value is None else 1e-6 * value for key, value in energy.items()}
+    rows = {"confining pressure [MPa]": number(None if s["confining_pressure"] is None
+                                               else 1e-6 * s["confining_pressure"], "{:g}")}
+    rows |= {f"particles at {float(strain):.1%}": str(count) for strain, count in s["particles_at_strain"].items()}
+    rows["broken"] = number(s["broken_total"], "{}")
+    rows |= {f"contacts, {name}": number(s[f"contacts_{key}"], "{}")
+             for name, key in (("start", "initial"), ("peak", "peak"), ("end", "final"))}
+    for name, key in (("start", "initial"), ("end", "final")):
+        rows[f"void ratio, {name}"] = number(s[f"{key}_void_ratio"])
+        rows[f"e1 / e2 / e4, {name}"] = " / ".join(number(s["void_ratios"][key][kind]) for kind in ("e1", "e2", "e4"))
+    rows["peak sin φ"] = number(s["peak_sin_phi"])
+    rows["strain at the peak"] = number(s["peak_strain"], "{:.2%}")
+    rows["residual sin φ"] = number(s["residual_sin_phi"])
+    fabric = s["anisotropy_peak"] or {}
+    rows["a / a_n / a_t at the peak"] = " / ".join(number(fabric.get(key)) for key in ("a", "a_n", "a_t"))
+    rows["sin φ of Eq. 10 at the peak"] = number(s["sin_phi_micro_peak"])
+    rows |= {f"{label} [MJ]": number(megajoule[key], "{:.4g}") for label, key in (
+        ("boundary work", "boundary_work"), ("friction", "friction"), ("damping", "damping"),
+        ("elastic energy, end", "elastic"), ("kinetic energy, end", "kinetic"),
+        ("released by breakage", "released_by_breakage"), ("contact law work", "contact_law_work"),
+        ("energy residual", "residual"))}
+    rows["steps"] = number(s["steps"], "{:,}")
+    rows["contact steps"] = number(s["contact_steps"], "{:,}")
+    return rows
+
+
+def summary_table(runs):
+    """Header cells, then (label, values, the paper's value or None) for each row that some run has."""
+    tables = [summary_rows(run) for run in runs]
+    beside = [published(run) for run in runs]
+    labels = list(dict.fromkeys(label for table in tables for label in table))
+    with_paper = any(beside)
+    rows = []
+    for label in labels:
+        reference = " / ".join(str(values.get(label, "")) if values else "" for values in beside).strip(" /")
+        rows.append((label, [table.get(label, "–") for table in tables], reference if with_paper else None))
+    return {"names": [run.name for run in runs], "with_paper": with_paper, "rows": rows}
+
+
+def checks(runs):
+    """(run, check, found, wanted, passed or None if it cannot be told)."""
+    found = []
+    for run in runs:
+        s, energy = run.summary, run.summary["energy"]
+        work, residual = energy["boundary_work"], energy["residual"]
+        values = (
+            ("unbalanced force at rest", s["unbalanced_force_at_rest"], REST_TOLERANCE, "{:.1e}"),
+            ("lateral stress error, rms", s["lateral_stress_error_rms"], SERVO_TOLERANCE, "{:.2%}"),
+            ("largest inertial number", s["max_inertial_number"], INERTIA_TOLERANCE, "{:.1e}"),
+            ("solid area, relative change", s["solid_area_error"], AREA_TOLERANCE, "{:.1e}"),
+            ("energy residual / boundary work", abs(residual / work) if work and residual is not None else None,
+             ENERGY_TOLERANCE, "{:.2%}"),
+        )
+        for label, value, limit, form in values:
+            found.append((run.name, label, number(value, form), "≤ " + form.format(limit),
+                          None if value is None else value <= limit))
+    return found
+
+
+def warnings(runs):
+    """(run, text) of the warnings in the ledgers; of those that differ by their numbers alone, the first."""
+    found = []
+    for run in runs:
+        first, counts = {}, Counter()
+        for event in run.ledger():
+            if event["event"] == "warning":
+                text = f"{event.get('source', '')}: {event.get('text', '')}".strip(": ")
+                first.setdefault(kind_of(text), text)
+                counts[kind_of(text)] += 1
+        found += [(run.name, text + (f" (and {counts[kind] - 1} more like it)" if counts[kind] > 1 else ""))
+                  for kind, text in first.items()]
+    return found

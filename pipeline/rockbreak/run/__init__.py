@@ -1,0 +1,1 @@
+"""One run: the coupled loop, its directory, its ledger, what is read from it."""

@@ -1,0 +1,327 @@
+"""The coupled loop: frame K from `dem`, split K from `xfem`, back to `dem`, until the final frame.
+
+Resident mode talks to two processes that stay (`serve`); one-shot mode starts one process per frame and per split.
+Both give the same payloads; so does a run that was killed and resumed.
+"""
+import contextlib
+import re
+import signal
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+from .child import Child, user_seconds_of_ended_children
+from ..errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
+from .ledger import Ledger, read_ledger
+from .payload_hash import xxh3_128
+from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, refusals_in, written_file
+from ..sealed import open_sealed
+
+
+@dataclass
+class Options:
+    case: Path
+    out: Path
+    mode: str = "resident"
+    resume: bool = False
+    overrides: list = field(default_factory=list)
+    threads: int | None = None
+
+
+class ResidentDem:
+    """`dem run --serve`: one process for the whole run."""
+
+    def __init__(self, run):
+        self._run = run
+        self._child = None
+
+    def first_frame(self, newest):
+        self._child = self._run.start("dem", [*self._run.dem_arguments(), "--serve"])
+        return self._next()
+
+    def next_frame(self, k, split):
+        self._child.send(f"resume {split or '-'}")
+        return self._next()
+
+    def _next(self):
+        line = self._child.receive()
+        if line == "done":
+            self._child.finish()
+            return None
+        match = re.fullmatch(r"frame (\d+) (.+) (\d+) ([0-9a-f]+)", line)
+        if not match:
+            raise RockbreakError(IO_FAILURE, f"dem: expected `frame K PATH BYTES HASH`, found `{line}`")
+        return int(match[1])
+
+    def finish(self, k):
+        """After the final frame; its split is not applied."""
+        self._child.send("resume -")
+        line = self._child.receive()
+        if line != "done":
+            raise RockbreakError(IO_FAILURE, f"dem: expected `done` after the final frame {k}, found `{line}`")
+        self._child.finish()
+
+
+class OneShotDem:
+    """`dem run --until-frame K --resume`: one process per frame; it finds the split of the frame before by itself."""
+
+    def __init__(self, run):
+        self._run = run
+
+    def first_frame(self, newest):
+        return self._until(0 if newest is None else newest + 1)
+
+    def next_frame(self, k, split):
+        return self._until(k + 1)
+
+    def _until(self, k):
+        self._run.start("dem", [*self._run.dem_arguments(), "--until-frame", str(k)]).finish()
+        return k if self._run.directory.frame_file(k).exists() else None
+
+    def finish(self, k):
+        pass
+
+
+class ResidentXfem:
+    """`xfem serve`. It works inside the run directory, so that no path of its protocol can hold a blank."""
+
+    def __init__(self, run):
+        self._run = run
+        self._child = None
+
+    def solve(self, frame, previous, out):
+        if self._child is None:
+            self._child = self._run.start("xfem", ["serve", "--config", "case.yaml", *self._run.threads()],
+                                          cwd=self._run.directory.path)
+        self._child.send(f"solve {frame} {previous or '-'} {out}")
+        line = self._child.receive()
+        if not re.fullmatch(r"split (.+) (\d+) ([0-9a-f]+)", line):
+            raise RockbreakError(IO_FAILURE, f"xfem: expected `split OUT BYTES HASH`, found `{line}`")
+
+    def finish(self):
+        if self._child is not None:
+            self._child.finish()
+
+
+class OneShotXfem:
+    """`xfem solve`: one process per split."""
+
+    def __init__(self, run):
+        self._run = run
+
+    def solve(self, frame, previous, out):
+        self._run.start("xfem", ["solve", frame, "--config", "case.yaml", "--out", out,
+                                 *(["--previous", previous] if previous else []), *self._run.threads()],
+                        cwd=self._run.directory.path).finish()
+
+    def finish(self):
+        pass
+
+
+class Run:
+    """One coupled run, from an empty or an interrupted directory to the split of its final frame."""
+
+    def __init__(self, options, directory, lock, ledger, progress):
+        self.options = options
+        self.directory = directory
+        self._lock = lock
+        self._ledger = ledger
+        self._progress = progress
+        self._children = []
+        self._broken = None
+        self._breakable = None
+        self._target_strain = None
+        self._dem = ResidentDem(self) if options.mode == "resident" else OneShotDem(self)
+        self._xfem = ResidentXfem(self) if options.mode == "resident" else OneShotXfem(self)
+
+    # -- what the two front ends need
+
+    def threads(self):
+        return [] if self.options.threads is None else ["--threads", str(self.options.threads)]
+
+    def dem_arguments(self):
+        """Always --resume: whether the directory may be used has been settled here."""
+        overrides = [word for override in self.options.overrides for word in ("--set", override)]
+        return ["run", str(self.options.case), "--out", str(self.options.out), "--resume", *overrides,
+                *self.threads()]
+
+    def start(self, name, arguments, cwd=None):
+        self._children = [child for child in self._children if child.is_alive()]
+        child = Child(name, arguments, self._lock, self, cwd)
+        self._children.append(child)
+        return child
+
+    def child_event(self, name, event):
+        if event["event"] == "warning":
+            self._ledger.write("warning", **{"source": name, **{k: v for k, v in event.items()
+                                                                if k not in ("event", "time")}})
+        self._progress.child_event(name, event)
+
+    def child_message(self, name, text):
+        """Text for people; `NAME: warning: TEXT` goes into the ledger as well."""
+        mark = f"{name}: warning: "
+        if text.startswith(mark):
+            self.child_event(name, {"event": "warning", "text": text.removeprefix(mark)})
+        else:
+            self._progress.message(text)
+
+    # -- the loop
+
+    def execute(self):
+        try:
+            self._loop()
+        except Interrupted as interrupt:
+            self._stop_children(interrupt.signum)
+            raise
+        finally:
+            self._stop_children(signal.SIGTERM)
+
+    def _stop_children(self, signum):
+        for child in self._children:
+            child.stop(signum)
+
+    def _loop(self):
+        newest = self.directory.newest_valid_frame()
+        self.directory.drop_splits_after(newest)
+        if newest is not None:
+            self._learn_case()
+            self._register_unknown(newest)
+            self._solve_missing(newest)
+            if self._is_final(newest):
+                return
+        clock = time.perf_counter()
+        k = self._dem.first_frame(newest)
+        while k is not None:
+            arrived = time.perf_counter()
+            self._learn_case()
+            final = self._register_frame(k, dem_seconds=arrived - clock)
+            split = None
+            waited = 0.0
+            if self._breakable:
+                waited = self._solve(k)
+                split = self.directory.split_file(k)
+            self._register_split(k, waited, handover=time.perf_counter() - arrived - waited)
+            if final:
+                self._dem.finish(k)
+                self._xfem.finish()
+                return
+            clock = time.perf_counter()
+            k = self._dem.next_frame(k, split)
+        raise RockbreakError(IO_FAILURE, "dem ended before the final frame")
+
+    def _learn_case(self):
+        """`dem` writes the resolved case.yaml before its first frame."""
+        if self._breakable is not None:
+            return
+        case = self.directory.case()
+        self._breakable = "breakage" in (case.get("effects") or [])
+        self._target_strain = (case.get("shear") or {}).get("axial_strain")
+        if self._breakable:
+            make_folder(self.directory.path / "splits")
+            self._broken = 0
+
+    def _is_final(self, k):
+        return bool(attributes(self.directory.frame_file(k)).get("final", 0))
+
+    def _register_unknown(self, newest):
+        """Frames and splits that stand here, but of which the ledger had not heard when the driver was killed."""
+        known = {event.get("path") for event in read_ledger(self.directory.ledger_file)}
+        for k in range(newest + 1):
+            if f"frames/{k:06d}.h5" not in known and is_valid(self.directory.frame_file(k)):
+                self._register_frame(k, dem_seconds=0.0)
+            if self._breakable and f"splits/{k:06d}.h5" not in known and self.directory.split_answers(k):
+                self._register_split(k, waited=0.0, handover=0.0)
+
+    def _solve_missing(self, newest):
+        """Every split that a resumed run needs: of the newest frame, and of any before it that were lost."""
+        if not self._breakable:
+            return
+        first = newest
+        while first >= 0 and not self.directory.split_answers(first):
+            self.directory.split_file(first).unlink(missing_ok=True)
+            first -= 1
+        self._broken = sum(broken_in(self.directory.split_file(k)) for k in range(first + 1))
+        for k in range(first + 1, newest + 1):
+            begin = time.perf_counter()
+            waited = self._solve(k)
+            self._register_split(k, waited, handover=time.perf_counter() - begin - waited)
+
+    def _solve(self, k):
+        """Seconds that xfem took for split k."""
+        begin = time.perf_counter()
+        self._xfem.solve(f"frames/{k:06d}.h5", f"splits/{k - 1:06d}.h5" if k > 0 else None, f"splits/{k:06d}.h5")
+        return time.perf_counter() - begin
+
+    def _register_frame(self, k, dem_seconds):
+        path = self.directory.frame_file(k)
+        try:
+            with open_sealed(path) as file:
+                state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
+                         "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
+                final = bool(file.attrs["final"])
+        except (OSError, KeyError) as error:
+            raise RockbreakError(IO_FAILURE, f"{path}: not a readable frame: {error}") from error
+        self._ledger.write("frame", **state, final=final, **written_file(path),
+                           seconds={"dem": round(dem_seconds, 6)})
+        self._progress.frame({**state, "broken": self._broken, "target_strain": self._target_strain})
+        return final
+
+    def _register_split(self, k, waited, handover):
+        path = self.directory.split_file(k)
+        if not self._breakable:
+            return
+        broken = broken_in(path)
+        self._broken += broken
+        self._ledger.write("split", frame=k, broken=broken, **written_file(path),
+                           seconds={"xfem": round(waited, 6), "handover": round(handover, 6)})
+        for particle, reason in refusals_in(path):
+            self.child_event("xfem", {"event": "warning", "frame": k, "particle": particle,
+                                      "text": f"frame {k}: particle {particle}: analysis refused: {reason}"})
+
+
+def catch_signals():
+    """SIGINT and SIGTERM raise Interrupted, once."""
+    for one in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(one, _raise_interrupted)
+
+
+def _raise_interrupted(signum, _):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    raise Interrupted(signum)
+
+
+def cpu_seconds():
+    return {"cpu_seconds": round(user_seconds_of_ended_children(), 3)}
+
+
+def drive(options, progress):
+    """Runs to the end or raises. Returns the run directory."""
+    if not options.case.is_file():
+        raise RockbreakError(BAD_INPUT, f"{options.case}: no such file; expected a scene (YAML), for example "
+                             "configs/demo.yaml")
+    directory = RunDirectory(options.out)
+    with directory.lock() as lock:
+        if not options.resume and not directory.is_empty():
+            raise RockbreakError(BAD_INPUT, f"{options.out}: is not empty; go on with --resume, or choose another "
+                                 "--out")
+        catch_signals()
+        with Ledger(directory.ledger_file) as ledger, progress:
+            scene = {"scene_hash": xxh3_128(options.case.read_bytes()), "overrides": options.overrides}
+            starts = [event for event in read_ledger(directory.ledger_file) if event["event"] == "start"]
+            ledger.write("start", case=str(options.case), **scene, mode=options.mode, resume=options.resume,
+                         threads=options.threads)
+            run = Run(options, directory, lock, ledger, progress)
+            if starts and directory.case_file.exists() and {key: starts[0].get(key) for key in scene} != scene:
+                run.child_event("driver", {"event": "warning", "text": f"{options.case} or its --set is not what "
+                                           f"{directory.path} was started with; {directory.case_file} stays in force, "
+                                           "but for its guards"})
+            try:
+                run.execute()
+            except (RockbreakError, Interrupted) as end:
+                with contextlib.suppress(RockbreakError):  # the ledger may be what fails
+                    ledger.write("end", code=end.code, reason=end.reason, **cpu_seconds())
+                raise
+            ledger.write("end", code=0, **cpu_seconds())
+    return directory

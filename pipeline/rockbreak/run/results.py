@@ -1,0 +1,103 @@
+"""Everything that is read from a run, each thing once and only when somebody asks for it."""
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import BAD_INPUT, RockbreakError
+from ..measures.fabric import frame_anisotropies
+from .history import read_history
+from .ledger import read_ledger
+from .run_directory import broken_in, plain, refusals_in
+from ..sealed import open_sealed
+
+
+class Results:
+    def __init__(self, directory):
+        self.directory = directory
+        self._anisotropies = {}
+
+    @cached_property
+    def name(self):
+        return self.directory.path.resolve().name
+
+    @cached_property
+    def case(self):
+        return self.directory.case()
+
+    @cached_property
+    def breakable(self):
+        return self.directory.breaks_particles()
+
+    @cached_property
+    def frames(self):
+        return frame_table(self.directory)
+
+    @cached_property
+    def history(self):
+        return read_history(self.directory)
+
+    @cached_property
+    def broken(self):
+        """Frame number -> particles that its split breaks."""
+        if not self.breakable:
+            return {}
+        return {row["frame"]: broken_in(self.directory.split_file(row["frame"])) for row in self.frames}
+
+    @cached_property
+    def refused(self):
+        """Number of analyses that the splits refused."""
+        return sum(len(refusals_in(self.directory.split_file(k))) for k in self.broken)
+
+    @cached_property
+    def summary(self):
+        from .summary import summarize
+        return summarize(self)
+
+    @cached_property
+    def stages(self):
+        """(name, frame number) at the start, at the peak and at the end; fewer if they coincide."""
+        peak = nearest(self.frames, self.summary["peak_strain"] or 0.0)
+        rows = {len(self.frames) - 1: "end", peak: "peak", 0: "start"}
+        return [(rows[row], self.frames[row]["frame"]) for row in sorted(rows)]
+
+    def stage_frame(self, stage):
+        """Its frame number; the last one if that stage has none of its own."""
+        return dict(self.stages).get(stage, self.frames[-1]["frame"])
+
+    def ledger(self):
+        """Read anew each time: it grows while a report is made."""
+        return read_ledger(self.directory.ledger_file)
+
+    def anisotropies(self, k):
+        if k not in self._anisotropies:
+            with open_sealed(self.directory.frame_file(k)) as file:
+                self._anisotropies[k] = frame_anisotropies(file)
+        return self._anisotropies[k]
+
+
+def frame_table(directory):
+    """Number, step, axial strain, particles, contacts, solid area [m^2] and the final flag of every frame."""
+    if not directory.path.is_dir():
+        raise RockbreakError(BAD_INPUT, f"{directory.path}: no such directory; expected a run directory")
+    numbers = directory.frame_numbers()
+    if not numbers:
+        raise RockbreakError(BAD_INPUT, f"{directory.path}: found no frames/*.h5; expected a run directory with at "
+                             "least one frame")
+    table = []
+    for k in numbers:
+        path = directory.frame_file(k)
+        try:
+            with open_sealed(path) as file:
+                root = {key: plain(file.attrs[key]) for key in ("step", "axial_strain", "final")}
+                table.append({"frame": k, "step": int(root["step"]), "axial_strain": float(root["axial_strain"]),
+                              "final": bool(root["final"]), "particles": len(file["particles/id"]),
+                              "contacts": len(file["contacts/a"]),
+                              "solid_area": float(np.sum(file["particles/area"][:]))})
+        except (KeyError, OSError) as error:
+            raise RockbreakError(BAD_INPUT, f"{path}: not a complete frame: {error}") from error
+    return table
+
+
+def nearest(frames, strain):
+    """Row of the frame nearest to an axial strain."""
+    return min(range(len(frames)), key=lambda i: abs(frames[i]["axial_strain"] - strain))

@@ -1,0 +1,178 @@
+"""A run directory: where its files stand, which frames are valid, and its lock.
+
+DIR/case.yaml, run.jsonl, frames/000000.h5, splits/000000.h5, summary.json, report.html, figures/*.png
+"""
+import fcntl
+import os
+from pathlib import Path
+
+import yaml
+
+from ..errors import BAD_INPUT, IO_FAILURE, RockbreakError, cannot
+from .payload_hash import payload_hash, xxh3_128
+from ..sealed import open_sealed
+
+DRIVER_FILES = {".lock", "run.jsonl"}  # all that a run leaves which failed before it began
+
+
+class RunDirectory:
+    def __init__(self, path):
+        self.path = Path(path)
+
+    case_file = property(lambda self: self.path / "case.yaml")
+    ledger_file = property(lambda self: self.path / "run.jsonl")
+    summary_file = property(lambda self: self.path / "summary.json")
+    report_file = property(lambda self: self.path / "report.html")
+    figures = property(lambda self: self.path / "figures")
+
+    def frame_file(self, k):
+        return self.path / "frames" / f"{k:06d}.h5"
+
+    def split_file(self, k):
+        return self.path / "splits" / f"{k:06d}.h5"
+
+    def _numbers(self, folder):
+        files = (self.path / folder).glob("*.h5")
+        return sorted(int(file.stem) for file in files if file.stem.isdigit())
+
+    def frame_numbers(self):
+        return self._numbers("frames")
+
+    def split_numbers(self):
+        return self._numbers("splits")
+
+    def is_empty(self):
+        return not self.path.is_dir() or all(entry.name in DRIVER_FILES for entry in self.path.iterdir())
+
+    def case(self):
+        """The resolved configuration."""
+        try:
+            with open(self.case_file, encoding="utf-8") as file:
+                case = yaml.safe_load(file)
+        except FileNotFoundError:
+            raise RockbreakError(BAD_INPUT, f"{self.case_file}: no such file; a run directory has one") from None
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise RockbreakError(BAD_INPUT, f"{self.case_file}: {error}") from error
+        if not isinstance(case, dict):
+            raise RockbreakError(BAD_INPUT, f"{self.case_file}: found no mapping of keys")
+        return case
+
+    def breaks_particles(self):
+        return "breakage" in (self.case().get("effects") or [])
+
+    def newest_valid_frame(self):
+        """Number of the newest frame that reads without error and has the payload that it claims; None without one."""
+        for k in reversed(self.frame_numbers()):
+            if is_valid(self.frame_file(k)):
+                return k
+        return None
+
+    def split_answers(self, k):
+        """True if split k is valid and was made from the frame k that stands here."""
+        path = self.split_file(k)
+        return is_valid(path) and attributes(path).get("frame_hash") == attributes(self.frame_file(k)).get(
+            "payload_hash")
+
+    def drop_splits_after(self, k):
+        """Removes splits that answer no frame up to k, with half-written files."""
+        for number in self.split_numbers():
+            if k is None or number > k:
+                self.split_file(number).unlink()
+        for folder in (".", "frames", "splits", "prepared", "figures"):
+            for leftover in (self.path / folder).glob("*.tmp"):
+                leftover.unlink()
+
+    def lock(self):
+        return lock_directory(self.path, "pipeline/run", holders="pipeline/run or dem")
+
+
+def lock_directory(path, program, holders=None):
+    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the returned
+    file holds the lock until it and all its heirs are closed."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        file = open(path / ".lock", "w", encoding="utf-8")
+    except OSError as error:
+        raise RockbreakError(IO_FAILURE, f"{path}: cannot be used as a directory of {program}: "
+                             f"{error.filename}: {error.strerror}") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        file.close()
+        raise RockbreakError(BAD_INPUT, f"{path}: another {holders or program} is at work in this directory; "
+                             "wait for it, or choose another --out") from None
+    os.set_inheritable(file.fileno(), True)
+    return file
+
+
+def write_text(path, text):
+    write_whole(path, text.encode("utf-8"))
+
+
+def write_whole(path, content):
+    """A file that is either the old one or the new one, whole."""
+    temporary = path.with_name(path.name + ".tmp")
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise cannot("write", path, error) from error
+
+
+def make_folder(path):
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot("create", path, error) from error
+
+
+def attributes(path):
+    """Root attributes of an HDF5 file as plain Python values."""
+    with open_sealed(path) as file:
+        return {key: plain(value) for key, value in file.attrs.items()}
+
+
+def plain(value):
+    if isinstance(value, bytes):
+        return value.decode()
+    return value.item() if hasattr(value, "item") and getattr(value, "ndim", 0) == 0 else value
+
+
+def is_valid(path):
+    """True if the file has the bytes that were written and the payload has the hash that it states."""
+    try:
+        with open_sealed(path) as file:
+            return payload_hash(file) == plain(file.attrs.get("payload_hash"))
+    except (OSError, RockbreakError, KeyError, ValueError):
+        return False
+
+
+def written_file(path):
+    """What the ledger keeps of a file: name in its folder, size, payload hash and hash of the whole file."""
+    content = path.read_bytes()
+    return {"path": f"{path.parent.name}/{path.name}", "bytes": len(content),
+            "payload_hash": attributes(path).get("payload_hash"), "file_hash": xxh3_128(content)}
+
+
+def broken_in(split_file):
+    """Number of particles that a split breaks; 0 if it does not exist."""
+    if not split_file.exists():
+        return 0
+    try:
+        with open_sealed(split_file) as file:
+            return len(file["broken/parent"])
+    except (OSError, KeyError) as error:
+        raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error
+
+
+def refusals_in(split_file):
+    """(particle, reason) of every analysis that a split refused; none if it does not exist."""
+    if not split_file.exists():
+        return []
+    try:
+        with open_sealed(split_file) as file:
+            particles = [int(particle) for particle in file["refusals/particle"][:]] if "refusals" in file else []
+            return list(zip(particles, map(str, file["refusals/reason"].asstr()[:]))) if particles else []
+    except (OSError, KeyError) as error:
+        raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error
