@@ -1,1 +1,21 @@
-"""Micromechanical measures of a contact state and of a run."""
+"""Micromechanical measures of a contact state and of a run, on plain arrays. Needs numpy and h5py alone.
+
+    from rockbreak import measures
+    frame = measures.read_frame("runs/demo/frames/000040.h5")
+    fit = measures.fit_anisotropies(frame.normal, frame.normal_force, frame.shear_force)
+
+The table of functions stands in pipeline/README.md, Measures.
+"""
+from .breakage import (Breakages, Cracks, Families, Generation, angle_between, arrested_cracks, breakages_by_strain,
+                       breakages_of, direction_rose, families, generations, read_breakages)
+from .classes import force_classes, large_displacements, read_contact_state, stress_classes
+from .fabric import (Anisotropies, PolarHistogram, fit_anisotropies, frame_anisotropies, polar_histogram,
+                     sin_phi_of_stress)
+from .forces import (ForceDistribution, StrongShare, Uniformity, deviator_by_force, exponential_tail, force_distribution,
+                     power_of_weak, strong_share, uniformity)
+from .frame import Frame, Split, read_frame, read_split
+from .gradation import (FractalFit, Gradation, einav, equivalent_diameter, fractal_dimension,
+                        fractal_dimension_by_mass, frame_gradation, gradation, hardin, longest_diameter, marsal,
+                        sieve_size, smallest_piece, standard_sieves)
+from .stresses import (assembly_stress, class_of, element_stresses, frame_stresses, particle_stresses,
+                       principal_stresses)
