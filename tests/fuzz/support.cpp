@@ -7,26 +7,9 @@
 #include <cstdlib>
 
 #include "tests/fuzz/targets.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace fuzz {
-namespace {
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rockbreak_fuzz_XXXXXX").string();
-    if (!::mkdtemp(name.data())) wrong("cannot make a folder in " + name);
-    path = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  std::filesystem::path path;
-};
-
-}  // namespace
-
 std::span<const Target> targets() {
   static constexpr std::array kTargets = {
       Target{"scene", scene, 0},         Target{"file_bytes", file_bytes, 0}, Target{"files", files, 48},
@@ -42,8 +25,8 @@ void wrong(const std::string& what) {
 }
 
 const std::filesystem::path& scratch() {
-  static const Folder folder;
-  return folder.path;
+  static const scratch::Folder folder;
+  return folder.path();
 }
 
 std::filesystem::path scratch_file(const std::string& name, Input bytes) {

@@ -178,7 +178,7 @@ TEST_CASE("Loads out of balance by 1 to 22 % change stress and load factor in pr
 }
 
 TEST_CASE("A crack that rests lives through 50 frames of the executable, loaded and not, to the last bit") {
-  const sample::Directory directory("persistence");
+  const scratch::Folder directory;
   const auto at = [&](const std::string& name) { return (directory / name).string(); };
   std::ofstream(directory / "case.yaml") << common::to_yaml(sample::scene());
   common::Frame frame = sample::frame();

@@ -10,6 +10,7 @@
 #include "dem/stages/control.hpp"
 #include "dem/stages/generate.hpp"
 #include "tests/unit/dem/bodies.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 using common::Vec2;
 namespace fs = std::filesystem;
@@ -84,10 +85,10 @@ TEST_CASE("a state comes back from its frame file bit for bit") {
   REQUIRE(engine.state().energy.friction > 0);
   common::Frame frame = dem::to_frame(engine.state(), scene, common::Stage::shear);
   check_same(engine.state(), dem::to_state(frame));
-  const fs::path path = fs::temp_directory_path() / "rockbreak_test_checkpoint.h5";
+  const scratch::Folder folder;
+  const fs::path path = folder / "frame.h5";
   common::write_frame(path, frame, {});
   check_same(engine.state(), dem::to_state(common::read_frame(path)));
-  fs::remove(path);
 }
 
 TEST_CASE("an engine made from a checkpoint goes on like the one that was not interrupted") {

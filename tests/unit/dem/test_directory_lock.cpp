@@ -11,12 +11,13 @@
 
 #include "common/error.hpp"
 #include "dem/directory_lock.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace fs = std::filesystem;
 
 TEST_CASE("a run directory has one holder, and a driver's dem counts as the driver") {
-  const fs::path directory = fs::temp_directory_path() / fmt::format("rockbreak_test_lock_{}", getpid());
-  fs::create_directories(directory);
+  const scratch::Folder folder;
+  const fs::path& directory = folder.path();
   unsetenv("ROCKBREAK_LOCK");
   const auto refused = [&] {
     try {

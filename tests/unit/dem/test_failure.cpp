@@ -13,24 +13,14 @@
 #include "common/io/split.hpp"
 #include "dem/failure.hpp"
 #include "dem/run.hpp"
+#include "tests/unit/dem/small_scene.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
+using dem_test::small_scene;
 
 namespace {
-
-common::Scene small_scene() {
-  common::Scene scene;
-  scene.effects.friction = true;
-  scene.effects.local_damping = true;
-  scene.effects.energy_ledger = true;
-  scene.assembly.particles = 30;
-  scene.preparation.void_ratio = 0.9;  // met at once
-  scene.preparation.unbalanced_force = 0.02;
-  scene.shear.axial_strain = 0.002;
-  scene.shear.frame_interval = 0.001;
-  return scene;
-}
 
 /// The message of the failure, line by line; none if the run went on.
 std::vector<std::string> failure_of(const common::Scene& scene, const fs::path& directory) {
@@ -57,19 +47,13 @@ std::string hash_of(const fs::path& file) {
   return common::read_frame(file).payload_hash;
 }
 
-struct Folder {
-  fs::path path = fs::temp_directory_path() / fmt::format("rockbreak_test_failure_{}", getpid());
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
 }  // namespace
 
 TEST_CASE("what a stopped run leaves fails again alone, and the run goes on to the end it would have had") {
-  const Folder root;
+  const scratch::Folder root;
   const common::Scene scene = small_scene();
-  REQUIRE(failure_of(scene, root.path / "whole").empty());
-  const std::string last = hash_of(root.path / "whole/frames/000002.h5");
+  REQUIRE(failure_of(scene, root.path() / "whole").empty());
+  const std::string last = hash_of(root.path() / "whole/frames/000002.h5");
 
   struct Case {
     const char* guard;
@@ -88,11 +72,11 @@ TEST_CASE("what a stopped run leaves fails again alone, and the run goes on to t
   };
   for (const Case& c : cases) {
     INFO(c.guard << (c.sample_first ? ", prepared" : ""));
-    const fs::path directory = root.path / "stopped";
+    const fs::path directory = root.path() / "stopped";
     fs::remove_all(directory);
     if (c.sample_first) {
       fs::create_directories(directory);
-      fs::copy(root.path / "whole/prepared", directory / "prepared");
+      fs::copy(root.path() / "whole/prepared", directory / "prepared");
     }
     common::Scene strict = scene;
     strict.guards.*c.limit = c.value;
@@ -109,7 +93,7 @@ TEST_CASE("what a stopped run leaves fails again alone, and the run goes on to t
     }
 
     // Alone, moved elsewhere, twice.
-    const fs::path moved = root.path / "moved";
+    const fs::path moved = root.path() / "moved";
     fs::remove_all(moved);
     fs::create_directories(moved);
     fs::copy(directory / "failure", moved / "failure", fs::copy_options::recursive);
@@ -126,28 +110,28 @@ TEST_CASE("what a stopped run leaves fails again alone, and the run goes on to t
 }
 
 TEST_CASE("a run from another run's sample leaves its sample too, wherever the failure is moved") {
-  const Folder root;
-  REQUIRE(failure_of(small_scene(), root.path / "whole").empty());
+  const scratch::Folder root;
+  REQUIRE(failure_of(small_scene(), root.path() / "whole").empty());
   common::Scene scene = small_scene();
-  scene.preparation.from = (root.path / "whole/prepared/sample.h5").string();
+  scene.preparation.from = (root.path() / "whole/prepared/sample.h5").string();
   scene.guards.overlap = 1e-7;
-  const fs::path directory = root.path / "stopped";
+  const fs::path directory = root.path() / "stopped";
   const std::vector<std::string> said = failure_of(scene, directory);
   REQUIRE(said.size() == 3);
   CHECK(record_of(directory).at("checkpoint") == "prepared/sample.h5");
   CHECK(replay_of(directory) == std::vector<std::string>{said[0]});
-  fs::rename(directory / "failure", root.path / "failure");
+  fs::rename(directory / "failure", root.path() / "failure");
   fs::remove_all(directory);
-  fs::remove_all(root.path / "whole");
-  for (int time = 0; time < 2; ++time) CHECK(replay_of(root.path) == std::vector<std::string>{said[0]});
+  fs::remove_all(root.path() / "whole");
+  for (int time = 0; time < 2; ++time) CHECK(replay_of(root.path()) == std::vector<std::string>{said[0]});
 }
 
 TEST_CASE("a refused particle stops the run at its split, before the next step") {
-  const Folder root;
+  const scratch::Folder root;
   common::Scene scene = small_scene();
   scene.effects.breakage = true;
   scene.breakage.interval = 0.001;
-  const fs::path directory = root.path / "run";
+  const fs::path directory = root.path() / "run";
   REQUIRE(failure_of(scene, directory).empty());  // pauses for its first split
   const common::Frame frame = common::read_frame(directory / "frames/000000.h5");
   common::Split split;
@@ -176,29 +160,29 @@ TEST_CASE("a refused particle stops the run at its split, before the next step")
 }
 
 TEST_CASE("a failure that cannot be written down is told all the same") {
-  const Folder root;
+  const scratch::Folder root;
   const common::Scene scene = small_scene();
-  REQUIRE(failure_of(scene, root.path).empty());
-  fs::remove(root.path / "frames/000002.h5");
-  fs::create_symlink("nowhere/at/all", root.path / "failure");  // where the folder should be
+  REQUIRE(failure_of(scene, root.path()).empty());
+  fs::remove(root.path() / "frames/000002.h5");
+  fs::create_symlink("nowhere/at/all", root.path() / "failure");  // where the folder should be
   common::Scene strict = scene;
   strict.guards.unbalanced_force = 1e-9;
-  const std::vector<std::string> said = failure_of(strict, root.path);
+  const std::vector<std::string> said = failure_of(strict, root.path());
   REQUIRE(said.size() == 3);
   CHECK_THAT(said[0], Contains("frame 2") && Contains("the unbalanced force is"));
   CHECK_THAT(said[1], Contains("could not be kept") && Contains("failure"));
 }
 
 TEST_CASE("a time step too large ends the executable with code 3, and so does what it leaves") {
-  const Folder root;
-  fs::create_directories(root.path);
+  const scratch::Folder root;
+  fs::create_directories(root.path());
   common::Scene scene = small_scene();
   scene.contact.law = common::ContactLaw::potential;
   scene.contact.normal_stiffness = 1e9;
   scene.time_step.safety = 0.8;
-  std::ofstream(root.path / "scene.yaml") << common::to_yaml(scene);
+  std::ofstream(root.path() / "scene.yaml") << common::to_yaml(scene);
   const auto run = [&](const std::string& arguments) {
-    const std::string out = (root.path / "said").string();
+    const std::string out = (root.path() / "said").string();
     const int status =
         std::system(fmt::format("{}/dem run {} 2>{} >/dev/null", ROCKBREAK_BINARY_DIR, arguments, out).c_str());
     std::ifstream stream(out);
@@ -208,8 +192,8 @@ TEST_CASE("a time step too large ends the executable with code 3, and so does wh
     }
     return std::pair{WIFEXITED(status) ? WEXITSTATUS(status) : -1, error};
   };
-  const std::string out = (root.path / "run").string();
-  const auto first = run(fmt::format("{}/scene.yaml --out {}", root.path.string(), out));
+  const std::string out = (root.path() / "run").string();
+  const auto first = run(fmt::format("{}/scene.yaml --out {}", root.path().string(), out));
   CHECK(first.first == 3);
   CHECK_THAT(first.second, Contains("time step may be too large") && Contains("particle"));
   CHECK(run(fmt::format("{0}/failure/case.yaml --out {0}/failure --resume", out)) == first);

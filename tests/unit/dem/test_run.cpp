@@ -8,22 +8,19 @@
 #include "common/error.hpp"
 #include "common/io/frame.hpp"
 #include "dem/run.hpp"
+#include "tests/unit/dem/small_scene.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
 namespace {
 
-common::Scene small_scene() {
-  common::Scene scene;
-  scene.effects.friction = true;
-  scene.effects.local_damping = true;
-  scene.seed = 2;  // in which some contacts slide at rest
-  scene.assembly.particles = 30;
-  scene.preparation.void_ratio = 0.9;  // met at once
-  scene.preparation.unbalanced_force = 0.02;
-  scene.shear.axial_strain = 0.002;
-  scene.shear.frame_interval = 0.001;
+// Seed 2, in which some contacts slide at rest.
+common::Scene sliding_scene() {
+  common::Scene scene = dem_test::small_scene();
+  scene.effects.energy_ledger = false;
+  scene.seed = 2;
   return scene;
 }
 
@@ -56,11 +53,9 @@ std::string text_of(const fs::path& file) {
 }  // namespace
 
 TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of the scene that runs") {
-  // A directory of its own: several of these programs may run at a time.
-  const fs::path root = fs::temp_directory_path() / fmt::format("rockbreak_test_run_{}", getpid());
-  fs::remove_all(root);
+  const scratch::Folder root;
   const fs::path whole = root / "whole";
-  const common::Scene scene = small_scene();
+  const common::Scene scene = sliding_scene();
   const Outcome first = go_on(scene, whole);
   CHECK(first.end == dem::RunEnd::finished);
   CHECK(first.events > 0);
@@ -136,5 +131,4 @@ TEST_CASE("a run goes on from whatever is left of it, and a case.yaml tells of t
     follower.preparation.from = early.string();
     CHECK_THROWS_WITH(go_on(follower, root / "refused"), Contains("middle of a preparation"));
   }
-  fs::remove_all(root);
 }

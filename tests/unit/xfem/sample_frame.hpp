@@ -1,8 +1,6 @@
 // A small contact state: four far-away boundary particles press on polygons of several shapes, sizes and angles.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +12,7 @@
 #include "common/config/scene.hpp"
 #include "common/io/frame.hpp"
 #include "common/io/split.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace sample {
 
@@ -182,20 +181,5 @@ inline common::Frame next_frame(const common::Frame& frame, const common::Split&
   }
   return next;
 }
-
-/// A directory of its own for a test's files, removed with the object.
-class Directory {
- public:
-  explicit Directory(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("rockbreak_xfem_" + name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Directory() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace sample

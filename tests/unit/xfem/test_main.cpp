@@ -25,7 +25,7 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Outcome run(const sample::Directory& directory, const std::string& arguments, const std::string& input = "") {
+Outcome run(const scratch::Folder& directory, const std::string& arguments, const std::string& input = "") {
   std::ofstream(directory / "stdin") << input;
   const std::string out = (directory / "stdout").string(), err = (directory / "stderr").string();
   const int status = std::system(
@@ -35,8 +35,8 @@ Outcome run(const sample::Directory& directory, const std::string& arguments, co
 
 /// A directory with frame.h5 and case.yaml.
 struct Workspace {
-  sample::Directory directory;
-  explicit Workspace(const std::string& name) : directory(name) {
+  scratch::Folder directory;
+  Workspace() {
     common::Frame frame = sample::frame();
     common::write_frame(directory / "frame.h5", frame, {});
     std::ofstream(directory / "case.yaml") << common::to_yaml(sample::scene());
@@ -50,7 +50,7 @@ struct Workspace {
 }  // namespace
 
 TEST_CASE("solve is silent on stdout, and serve writes the same bytes") {
-  const Workspace work("main_solve");
+  const Workspace work;
   const Outcome solved =
       run(work.directory, work.solve("--threads 2 --out " + work.at("a.h5") + " --profile " + work.at("p.json")));
   INFO(solved.err);
@@ -70,7 +70,7 @@ TEST_CASE("solve is silent on stdout, and serve writes the same bytes") {
 }
 
 TEST_CASE("bad input ends with exit code 2 and a message that says what and where") {
-  const Workspace work("main_bad");
+  const Workspace work;
   const std::string out = "--out " + work.at("s.h5");
   const auto refuses = [&](const std::string& arguments, const std::string& expected) {
     const Outcome outcome = run(work.directory, arguments);
@@ -94,7 +94,7 @@ TEST_CASE("bad input ends with exit code 2 and a message that says what and wher
 }
 
 TEST_CASE("a previous split of another configuration or a later frame is refused") {
-  const Workspace work("main_previous");
+  const Workspace work;
   const std::string first = work.at("first.h5");
   REQUIRE(run(work.directory, work.solve("--out " + first)).code == 0);
   const Outcome same = run(work.directory, work.solve("--previous " + first + " --out " + work.at("s.h5")));
@@ -109,14 +109,14 @@ TEST_CASE("a previous split of another configuration or a later frame is refused
 }
 
 TEST_CASE("a directory that cannot be written is an input/output failure") {
-  const Workspace work("main_unwritable");
+  const Workspace work;
   const Outcome outcome = run(work.directory, work.solve("--out " + work.at("frame.h5") + "/inside.h5"));
   CHECK(outcome.code == 4);
   CHECK_THAT(outcome.err, Catch::Contains("inside.h5"));
 }
 
 TEST_CASE("check and explain read scenes and laboratory tests") {
-  const Workspace work("main_explain");
+  const Workspace work;
   const std::string labs = std::string(ROCKBREAK_SOURCE_DIR) + "/configs/lab/";
   for (const std::string& file : {work.at("case.yaml"), labs + "brazilian.yaml", labs + "uniaxial.yaml"}) {
     const Outcome checked = run(work.directory, "check " + file);
@@ -131,7 +131,7 @@ TEST_CASE("check and explain read scenes and laboratory tests") {
 }
 
 TEST_CASE("signals end the resident service with their exit codes") {
-  const Workspace work("main_signals");
+  const Workspace work;
   for (const auto& [signal, code] : {std::pair{SIGTERM, 143}, {SIGINT, 130}}) {
     int to_child[2], from_child[2];
     REQUIRE(pipe(to_child) == 0);
@@ -158,7 +158,7 @@ TEST_CASE("signals end the resident service with their exit codes") {
 }
 
 TEST_CASE("a refused particle is told, stands in a file of its own, and is refused alone for the same reason") {
-  const Workspace work("main_refused");
+  const Workspace work;
   common::Frame frame = sample::frame();
   const std::int64_t id = sample::kFirstCrushed;
   REQUIRE(frame.contacts.b[2] == id);

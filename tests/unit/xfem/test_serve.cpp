@@ -16,7 +16,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 void silent(const std::string&) {}
 
 /// Frame 7, and frame 8 without the particles that broke, under the same forces.
-void write_two_frames(const sample::Directory& directory) {
+void write_two_frames(const scratch::Folder& directory) {
   common::Frame first = sample::frame();
   common::write_frame(directory / "7.h5", first, {});
   const common::Split split = xfem::FrameSolver(sample::scene(), 1).solve(first, nullptr);
@@ -35,7 +35,7 @@ void write_two_frames(const sample::Directory& directory) {
 }  // namespace
 
 TEST_CASE("the resident service answers with the bytes of one-shot processes") {
-  const sample::Directory directory("serve");
+  const scratch::Folder directory;
   write_two_frames(directory);
   const auto path = [&](const char* name) { return (directory / name).string(); };
 
@@ -64,7 +64,7 @@ TEST_CASE("the resident service answers with the bytes of one-shot processes") {
 }
 
 TEST_CASE("the service reads the previous split again if its file has changed") {
-  const sample::Directory directory("changed");
+  const scratch::Folder directory;
   write_two_frames(directory);
   xfem::SplitService service(sample::scene(), 1, silent);
   service.solve(directory / "7.h5", std::nullopt, directory / "7s.h5");
@@ -74,7 +74,7 @@ TEST_CASE("the service reads the previous split again if its file has changed") 
 }
 
 TEST_CASE("failures are answered in one line and the service goes on") {
-  const sample::Directory directory("failures");
+  const scratch::Folder directory;
   common::Frame frame = sample::frame();
   common::write_frame(directory / "7.h5", frame, {});
   xfem::SplitService service(sample::scene(), 1, silent);

@@ -15,7 +15,7 @@ using common::Vec2;
 namespace {
 
 std::string payload(const common::Split& split) {
-  const sample::Directory directory("payload");
+  const scratch::Folder directory;
   common::Split copy = split;
   return common::write_split(directory / "split.h5", copy, {}).payload_hash;
 }

@@ -109,7 +109,7 @@ TEST_CASE("the literal reading has point loads, whatever patch is asked for") {
 }
 
 TEST_CASE("a laboratory test leaves a summary with the agreed keys, a file and a figure") {
-  const sample::Directory directory("lab");
+  const scratch::Folder directory;
   const common::LabTest test = test_of(LabTestKind::brazilian, 75);
   xfem::run_lab_test(test, directory / "out");
   std::ifstream stream(directory / "out" / "summary.json");

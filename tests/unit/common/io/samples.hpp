@@ -1,5 +1,4 @@
-// Small frames and splits, files that go away by themselves, and what an error says: shared by the tests of this
-// folder.
+// Small frames and splits, and what an error says: shared by the tests of this folder.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -13,27 +12,13 @@
 #include "common/io/frame.hpp"
 #include "common/io/hdf5_file.hpp"
 #include "common/io/split.hpp"
+#include "tests/unit/scratch_folder.hpp"
 
 namespace common_test {
 
 using namespace common;
 
-/// An empty directory that is removed at the end of the test.
-class Directory {
- public:
-  Directory() {
-    std::string name = (std::filesystem::temp_directory_path() / "rockbreak_io_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  ~Directory() { std::filesystem::remove_all(path_); }
-  Directory(const Directory&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using Directory = scratch::Folder;
 
 /// Four particles (triangle, square, pentagon-like quadrilateral, triangle) with ids 3, 9, 17, 40 and three contacts.
 inline Frame sample_frame() {
