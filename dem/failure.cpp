@@ -38,6 +38,21 @@ fs::path place_of(const fs::path& checkpoint, const common::Scene& scene) {
   return checkpoint.parent_path().filename() / checkpoint.filename();
 }
 
+bool is_sheared(const Failure& failure) {
+  return failure.stage == name_of(Phase::shear);
+}
+
+// The command that analyses a refused particle alone, if xfem has left its file in this run (xfem/refusal.hpp).
+std::string refused_alone(const fs::path& directory, const Failure& failure) {
+  const std::string particle = (directory / "failure").string() +
+                               fmt::format("/frame_{:06}_particle_{}", failure.frame, failure.finding.particles[0]);
+  if (!fs::exists(particle + ".h5")) return {};
+  const bool cracked = fs::exists(particle + "_previous.h5");
+  return fmt::format("the particle alone: xfem solve {0}.h5 --config {1}{2} --out SPLIT.h5", particle,
+                     (directory / "case.yaml").string(),
+                     cracked ? fmt::format(" --previous {}_previous.h5", particle) : "");
+}
+
 }  // namespace
 
 bool is_failure(const fs::path& directory) {
@@ -100,6 +115,42 @@ void write_failure(const fs::path& directory, const common::Scene& scene, const 
     record["numbers"]["state"] = refused.what();
   }
   write_text(folder / kRecord, record.dump(2) + "\n");
+}
+
+bool is_refusal(const Failure& failure) {
+  return failure.finding.guard == "refusals";
+}
+
+std::string place_and_reason(const Failure& failure) {
+  return (is_sheared(failure) ? fmt::format("frame {} (step {}, axial strain {:.6f}): ", failure.frame, failure.step,
+                                            failure.axial_strain)
+                              : fmt::format("{} (step {}): ", failure.stage, failure.step)) +
+         failure.finding.text;
+}
+
+std::string keep_and_advise(const fs::path& directory, const common::Scene& scene, const Failure& failure,
+                            common::Frame state) {
+  std::string text;
+  try {
+    write_failure(directory, scene, failure, std::move(state));
+    const std::string particle = is_refusal(failure) ? refused_alone(directory, failure) : std::string();
+    text = '\n' + (particle.empty() ? fmt::format("the failure alone: dem run {0}/failure/case.yaml --out {0}/failure "
+                                                  "--resume",
+                                                  directory.string())
+                                    : particle);
+  } catch (const common::Error& not_kept) {
+    text = fmt::format("\nthe failure could not be kept: {}", not_kept.what());
+  }
+  text += fmt::format("\nthe files of {} are valid: --resume goes on with other guards (--set guards.KEY=VALUE)",
+                      directory.string());
+  if (is_sheared(failure) && !is_refusal(failure)) {
+    const std::string& from = scene.preparation.from;
+    text += fmt::format(
+        "; a smaller time_step.safety or another contact law takes a new directory, from the same sample with --set "
+        "preparation.from={}",
+        from.empty() ? (directory / "prepared/sample.h5").string() : from);
+  }
+  return text;
 }
 
 }  // namespace dem

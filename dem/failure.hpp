@@ -40,6 +40,18 @@ bool is_failure(const std::filesystem::path& directory);
 void write_failure(const std::filesystem::path& directory, const common::Scene& scene, const Failure& failure,
                    common::Frame state);
 
+/// True if xfem has refused a particle: the finding is of a split, so of the frame before the one to come.
+bool is_refusal(const Failure& failure);
+
+/// Frame or stage, step and strain, then what the guard has found.
+std::string place_and_reason(const Failure& failure);
+
+/// Calls write_failure and returns the lines that go below the reason: the command that fails again alone (for a
+/// refused particle, if xfem has left its file, that of the particle), and how the run can go on. Says so if nothing
+/// could be written.
+std::string keep_and_advise(const std::filesystem::path& directory, const common::Scene& scene, const Failure& failure,
+                            common::Frame state);
+
 /// Removes it again. Files of others in that folder stay.
 void remove_failure(const std::filesystem::path& directory);
 

@@ -17,9 +17,11 @@
 #include "dem/guards.hpp"
 #include "dem/history.hpp"
 #include "dem/measures.hpp"
+#include "dem/progress.hpp"
 #include "dem/run_directory.hpp"
 #include "dem/stages/generate.hpp"
 #include "dem/stages/prepare.hpp"
+#include "dem/stages/sample.hpp"
 #include "dem/stages/shear.hpp"
 
 namespace fs = std::filesystem;
@@ -104,27 +106,8 @@ class Run {
 
   // The sample of another run: its particles and contacts, this scene's laws and coefficients.
   void start_from_sample() {
-    const common::Frame frame = common::read_frame(scene_.preparation.from);
-    if (frame.stage == common::Stage::shear && frame.frame != 0) {
-      throw common::bad_input(
-          fmt::format("{}: is frame {} of a test, expected a prepared sample (stage confinement) or frame 0",
-                      scene_.preparation.from, frame.frame));
-    }
+    const common::Frame frame = read_sample(scene_);
     control_ = read_control(frame);
-    if (control_.phase != Phase::hold && control_.phase != Phase::shear) {
-      throw common::bad_input(
-          fmt::format("{}: is a checkpoint from the middle of a preparation ({}), expected a prepared sample",
-                      scene_.preparation.from, name_of(control_.phase)));
-    }
-    const Particles& p = frame.particles;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      const double density = p.mass[i] / p.area[i];
-      if (!(std::abs(density / scene_.material.density - 1) < 1e-9)) {
-        throw common::bad_input(
-            fmt::format("{}: particle {} has a density of {:.6g} kg/m^3, material.density of the scene is {:.6g}",
-                        scene_.preparation.from, p.id[i], density, scene_.material.density));
-      }
-    }
     make_engine(to_state(frame));
     checkpoint_ = scene_.preparation.from;
     engine_->edit().friction = scene_.effects.friction ? scene_.contact.friction : 0;
@@ -159,7 +142,7 @@ class Run {
     while (control_.phase != Phase::shear) {
       preparation.step();
       const std::int64_t step = engine_->clock().step;
-      if (step % 500 == 0) report_preparation();
+      if (step % 500 == 0) ports_.progress(preparation_event(scene_, *engine_, control_));
       if (step % kPreparationGuards == 0) guard_state();
       if (step % kPreparationInterval == 0 && control_.phase != Phase::shear) {
         checkpoint_ = directory_.preparation(++checkpoint);
@@ -266,7 +249,7 @@ class Run {
       require_lateral_stress(scene_, frame.history);
     }
     frame.final = frame.frame >= stage.last_frame();
-    report_shear();
+    ports_.progress(shear_event(scene_, *engine_, control_));
     const auto write_begin = Clock::now();
     const common::WrittenFile written =
         common::write_frame(directory_.frame(frame.frame), frame, scene_.output.durability);
@@ -321,17 +304,6 @@ class Run {
     require_progress_to_the_end();
   }
 
-  // The command that analyses a refused particle alone, if xfem has left its file in this run (xfem/refusal.hpp).
-  std::string refused_alone(const Failure& failure) const {
-    const std::string particle = (options_.directory / "failure").string() +
-                                 fmt::format("/frame_{:06}_particle_{}", failure.frame, failure.finding.particles[0]);
-    if (!fs::exists(particle + ".h5")) return {};
-    const bool cracked = fs::exists(particle + "_previous.h5");
-    return fmt::format("the particle alone: xfem solve {0}.h5 --config {1}{2} --out SPLIT.h5", particle,
-                       (options_.directory / "case.yaml").string(),
-                       cracked ? fmt::format(" --previous {}_previous.h5", particle) : "");
-  }
-
   // Writes down what a guard found, and says it: the text names the place, the reason and what can be done.
   std::string keep_failure(const common::Error& error) {
     Failure failure;
@@ -341,72 +313,18 @@ class Run {
       failure.finding = {"measure", error.what(), {}, {}};
     }
     const State& state = engine_->clock();
-    const bool refusal = failure.finding.guard == "refusals";
     failure.stage = name_of(control_.phase);
-    failure.frame = static_cast<std::int64_t>(control_.next_frame) - (refusal ? 1 : 0);
+    failure.frame = static_cast<std::int64_t>(control_.next_frame) - (is_refusal(failure) ? 1 : 0);
     failure.step = state.step;
     failure.time = state.time;
     failure.axial_strain = control_.axial_strain();
     failure.checkpoint = checkpoint_;
     failure.split = split_;
-    const bool shearing = control_.phase == Phase::shear;
-    std::string text = shearing ? fmt::format("frame {} (step {}, axial strain {:.6f}): ", failure.frame, failure.step,
-                                              failure.axial_strain)
-                                : fmt::format("{} (step {}): ", failure.stage, failure.step);
-    text += error.what();
-    if (is_replay_) return text;
-    const std::string out = options_.directory.string();
-    try {
-      write_failure(options_.directory, scene_, failure, snapshot());
-      text += '\n' + (refusal ? refused_alone(failure) : std::string());
-      if (text.back() == '\n') {
-        text += fmt::format("the failure alone: dem run {0}/failure/case.yaml --out {0}/failure --resume", out);
-      }
-    } catch (const common::Error& not_kept) {
-      text += fmt::format("\nthe failure could not be kept: {}", not_kept.what());
-    }
-    text +=
-        fmt::format("\nthe files of {} are valid: --resume goes on with other guards (--set guards.KEY=VALUE)", out);
-    if (shearing && !refusal) {
-      text += fmt::format(
-          "; a smaller time_step.safety or another contact law takes a new directory, from the same sample with --set "
-          "preparation.from={}",
-          scene_.preparation.from.empty() ? directory_.sample().string() : scene_.preparation.from);
-    }
-    return text;
+    if (is_replay_) return place_and_reason(failure);
+    return place_and_reason(failure) + keep_and_advise(options_.directory, scene_, failure, snapshot());
   }
 
-  void report_preparation() const {
-    const State& state = engine_->state();
-    const auto stress = mean_stress(state, ring_area(state));
-    emit({{"event", "progress"},
-          {"stage", name_of(control_.phase)},
-          {"step", state.step},
-          {"time", state.time},
-          {"void_ratio", void_ratio(state, scene_.preparation.definition)},
-          {"stress_xx", stress[0]},
-          {"stress_yy", stress[1]},
-          {"friction", state.friction},
-          {"unbalanced_force", engine_->health().unbalanced_force},
-          {"contacts", state.contacts.size()}});
-  }
-
-  void report_shear() const {
-    const State& state = engine_->state();
-    emit({{"event", "progress"},
-          {"stage", "shear"},
-          {"frame", static_cast<std::int64_t>(control_.next_frame)},
-          {"step", state.step},
-          {"axial_strain", control_.axial_strain()},
-          {"axial_strain_end", scene_.shear.axial_strain},
-          {"particles", state.particles.size()},
-          {"contacts", state.contacts.size()},
-          {"broken", control_.broken}});
-  }
-
-  void warn(const std::string& text) const { emit({{"event", "warning"}, {"text", text}}); }
-
-  void emit(const nlohmann::ordered_json& event) const { ports_.progress(event.dump()); }
+  void warn(const std::string& text) const { ports_.progress(warning_event(text)); }
 
   void write_profile() {
     if (options_.profile.empty()) return;
