@@ -4,38 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "common/error.hpp"
-#include "common/geometry/chord_split.hpp"
 #include "xfem/crack_state.hpp"
-#include "xfem/model_cache.hpp"
 #include "xfem/parallel.hpp"
+#include "xfem/split_record.hpp"
 
 namespace xfem {
 
 namespace {
-
-/// Unbalanced part of a particle's forces above which it is worth a warning.
-constexpr double kUnbalanceWarning = 0.05;
-/// Part of the mean sum of contact forces below which a particle is not worth one.
-constexpr double kHardlyLoaded = 0.05;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-
-/// What one particle brings to the analysis and takes from it.
-struct Case {
-  std::vector<Load> loads;  ///< body frame
-  bool breakable = false;
-  const std::vector<Crack>* stored = nullptr;  ///< cracks of the previous split
-  CanonicalOutline shape;                      ///< of a breakable particle
-  ModelCache::Entry* entry = nullptr;          ///< null: not analysed
-  std::string failure;                         ///< why there is no model or no result
-  bool solved = false;
-  BreakageResult result;  ///< in metres
-};
 
 /// Adds the time since it was made to a phase.
 class PhaseTimer {
@@ -50,72 +29,6 @@ class PhaseTimer {
   const char* phase_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// World tensor of a body-frame tensor: R S R^T.
-std::array<double, 3> to_world(const Stress& s, const common::Rotation& rotation) {
-  const double c = rotation.cos, n = rotation.sin;
-  return {c * c * s.xx + n * n * s.yy - 2 * c * n * s.xy, n * n * s.xx + c * c * s.yy + 2 * c * n * s.xy,
-          c * n * (s.xx - s.yy) + (c * c - n * n) * s.xy};
-}
-
-bool is_finite(const Stress& s) {
-  return std::isfinite(s.xx + s.yy + s.xy);
-}
-
-/// Why a result cannot be written down; empty if it can.
-std::string defect_of(const BreakageResult& result) {
-  if (!is_finite(result.mean_stress)) return "the stress is not finite";
-  if (result.status != common::ParticleStatus::broken) return {};
-  if (!result.path) return "broken without a path";
-  for (const Polygon* fragment : {&result.left, &result.right})
-    if (const std::string defect = common::outline_defect(*fragment); !defect.empty()) return "a fragment: " + defect;
-  return {};
-}
-
-std::vector<Load> canonical_loads(const Case& particle) {
-  std::vector<Load> loads;
-  loads.reserve(particle.loads.size());
-  for (const Load& load : particle.loads)
-    loads.push_back({particle.shape.to_canonical(load.point), load.force / particle.shape.size});
-  return loads;
-}
-
-/// Takes a result in canonical coordinates back to metres. The fragments are cut anew from the true outline, so that
-/// they share its vertices bit for bit.
-BreakageResult to_metres(BreakageResult result, const CanonicalOutline& shape, PolygonView outline) {
-  for (Crack& crack : result.cracks)
-    for (CrackPoint& point : crack.points) point.position = shape.from_canonical(point.position);
-  if (result.status == common::ParticleStatus::broken && result.path) {
-    for (Vec2& end : *result.path) end = shape.from_canonical(end);
-    common::ChordSplit pieces = common::split_by_chord(outline, (*result.path)[0], (*result.path)[1]);
-    result.left = std::move(pieces.left);
-    result.right = std::move(pieces.right);
-  }
-  return result;
-}
-
-std::vector<Case> gather_loads(const common::Frame& frame, const std::vector<common::Rotation>& rotation) {
-  const common::Particles& particles = frame.particles;
-  std::vector<Case> cases(particles.size());
-  const auto add = [&](std::int64_t id, const Vec2& point, const Vec2& force) {
-    const auto found = std::lower_bound(particles.id.begin(), particles.id.end(), id);
-    if (found == particles.id.end() || *found != id)
-      throw common::bad_input(
-          fmt::format("frame {}: a contact names particle {}, which is not there", frame.frame, id));
-    const std::size_t i = static_cast<std::size_t>(found - particles.id.begin());
-    if (force.x() == 0 && force.y() == 0) return;
-    if (!force.allFinite() || !point.allFinite()) {
-      cases[i].failure = "a contact force or its point is not finite";
-      return;
-    }
-    cases[i].loads.push_back({rotation[i].inverse(point - particles.position[i]), rotation[i].inverse(force)});
-  };
-  for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
-    add(frame.contacts.a[c], frame.contacts.point[c], -frame.contacts.force[c]);
-    add(frame.contacts.b[c], frame.contacts.point[c], frame.contacts.force[c]);
-  }
-  return cases;
-}
 
 }  // namespace
 
@@ -148,23 +61,18 @@ struct FrameSolver::Implementation {
   PhaseCounts counts;
   std::vector<std::string> warnings;
 
-  void prepare(const common::Frame& frame, const CrackState& state, std::vector<Case>& cases);
-  void screen_all(std::vector<Case>& cases) const;
-  void analyse_all(const common::Frame& frame, std::vector<Case>& cases) const;
-  void record(const common::Frame& frame, const std::vector<common::Rotation>& rotation, std::vector<Case>& cases,
-              common::Split& split) const;
-  void record_fragments(const common::Frame& frame, std::size_t i, const Case& particle, std::int64_t& next_id,
-                        CrackState& handed_down, common::Split& split) const;
-  void warn_of_unbalance(const common::Frame& frame, const std::vector<Case>& cases);
+  void prepare(const common::Frame& frame, const CrackState& state, std::vector<ParticleCase>& cases);
+  void screen_all(std::vector<ParticleCase>& cases) const;
+  void analyse_all(const common::Frame& frame, std::vector<ParticleCase>& cases) const;
 };
 
 /// Decides who is analysed, and with which model.
 void FrameSolver::Implementation::prepare(const common::Frame& frame, const CrackState& state,
-                                          std::vector<Case>& cases) {
+                                          std::vector<ParticleCase>& cases) {
   const common::Particles& particles = frame.particles;
   cache->start_round();
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    Case& particle = cases[i];
+    ParticleCase& particle = cases[i];
     const PolygonView outline = particles.outline(i);
     const auto stored = state.find(particles.id[i]);
     if (stored != state.end()) particle.stored = &stored->second;
@@ -184,11 +92,11 @@ void FrameSolver::Implementation::prepare(const common::Frame& frame, const Crac
 }
 
 /// What has no cracks and cannot fail is done with here.
-void FrameSolver::Implementation::screen_all(std::vector<Case>& cases) const {
+void FrameSolver::Implementation::screen_all(std::vector<ParticleCase>& cases) const {
   for_each_guarded(
       cases.size(), threads, [&](std::size_t i) -> std::string& { return cases[i].failure; },
       [&](std::size_t i) {
-        Case& particle = cases[i];
+        ParticleCase& particle = cases[i];
         if (!particle.entry || !particle.entry->model || particle.stored) return;
         const std::optional<Influence>& influence = particle.entry->model->influence;
         if (!influence) return;
@@ -200,11 +108,11 @@ void FrameSolver::Implementation::screen_all(std::vector<Case>& cases) const {
       });
 }
 
-void FrameSolver::Implementation::analyse_all(const common::Frame& frame, std::vector<Case>& cases) const {
+void FrameSolver::Implementation::analyse_all(const common::Frame& frame, std::vector<ParticleCase>& cases) const {
   for_each_guarded(
       cases.size(), threads, [&](std::size_t i) -> std::string& { return cases[i].failure; },
       [&](std::size_t i) {
-        Case& particle = cases[i];
+        ParticleCase& particle = cases[i];
         if (!particle.entry || particle.result.status == common::ParticleStatus::screened) return;
         if (!particle.entry->model) {
           particle.failure = particle.entry->failure;
@@ -224,128 +132,6 @@ void FrameSolver::Implementation::analyse_all(const common::Frame& frame, std::v
         particle.failure = defect_of(particle.result);
         particle.solved = particle.failure.empty();
       });
-}
-
-void FrameSolver::Implementation::record_fragments(const common::Frame& frame, std::size_t i, const Case& particle,
-                                                   std::int64_t& next_id, CrackState& handed_down,
-                                                   common::Split& split) const {
-  const BreakageResult& result = particle.result;
-  const std::array<Vec2, 2>& path = *result.path;
-  split.broken.parent.push_back(frame.particles.id[i]);
-  split.broken.path.push_back(path);
-  const double clearance = particle.shape.size * particle.entry->model->particle.elastic.mesh().size;
-  for (int side : {+1, -1}) {
-    const Polygon& outline = side > 0 ? result.left : result.right;
-    const std::int64_t id = next_id++;
-    split.fragments.id.push_back(id);
-    split.fragments.parent.push_back(frame.particles.id[i]);
-    split.fragments.vertices.insert(split.fragments.vertices.end(), outline.begin(), outline.end());
-    split.fragments.vertex_offset.push_back(static_cast<std::int64_t>(split.fragments.vertices.size()));
-
-    const Vec2 origin = common::centroid(outline);
-    const std::vector<InheritedCrack> inherited =
-        inherited_cracks(result.cracks, result.path_cracks, path, side, origin, clearance);
-    if (inherited.empty()) continue;
-    Polygon own = outline;
-    for (Vec2& vertex : own) vertex -= origin;
-    // A fragment below the smallest size is never analysed, and one that cannot be meshed will be refused.
-    if (common::area(own) < 2 * options.minimum_area) continue;
-    try {
-      const CanonicalOutline shape = canonical(own);
-      const Mesh mesh = make_mesh(shape, options.nodes);
-      for (InheritedCrack crack : inherited) {
-        for (Vec2& point : crack.polyline) point = shape.to_canonical(point);
-        Crack placed = place_polyline(mesh, crack.polyline, crack.tips);
-        for (CrackPoint& point : placed.points) point.position = shape.from_canonical(point.position);
-        if (placed.points.size() >= 2) handed_down[id].push_back(std::move(placed));
-      }
-    } catch (const common::Error&) {
-      handed_down.erase(id);
-    }
-  }
-}
-
-void FrameSolver::Implementation::record(const common::Frame& frame, const std::vector<common::Rotation>& rotation,
-                                         std::vector<Case>& cases, common::Split& split) const {
-  const common::Particles& particles = frame.particles;
-  std::int64_t next_id = frame.next_id;
-  if (!particles.id.empty()) next_id = std::max(next_id, particles.id.back() + 1);
-  CrackState handed_down;
-
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    Case& particle = cases[i];
-    BreakageResult& result = particle.result;
-    const bool screened = result.status == common::ParticleStatus::screened;
-    if (!particle.breakable) {
-      result.status = common::ParticleStatus::not_breakable;
-      result.min_safety_factor = kNotANumber;
-    } else if (!particle.failure.empty()) {
-      result = {};
-      result.status = common::ParticleStatus::refused;
-      result.reason = particle.failure;
-      result.min_safety_factor = kNotANumber;
-    } else if (particle.loads.empty()) {
-      result.status = particle.stored ? common::ParticleStatus::arrested : common::ParticleStatus::intact;
-      result.min_safety_factor = kInfinity;
-    }
-    const bool refused = result.status == common::ParticleStatus::refused;
-    if (!particle.breakable || refused) {
-      result.mean_stress = virial_stress(particle.loads, particles.outline(i));
-      if (!is_finite(result.mean_stress)) result.mean_stress = {};  // of forces that overflow
-    }
-    // What was not analysed to its end keeps the cracks that it had.
-    if ((!particle.solved || refused) && particle.stored) result.cracks = *particle.stored;
-    if (refused) {
-      split.refusals.particle.push_back(particles.id[i]);
-      split.refusals.reason.push_back(result.reason);
-    }
-    if (particle.solved) ++split.work.solved;
-    if (screened) ++split.work.screened;
-    split.work.growth_steps += result.growth_steps;
-
-    split.particles.id.push_back(particles.id[i]);
-    split.particles.status.push_back(result.status);
-    split.particles.mean_stress.push_back(to_world(result.mean_stress, rotation[i]));
-    split.particles.min_safety_factor.push_back(result.min_safety_factor);
-    const bool failed =
-        result.status == common::ParticleStatus::arrested || result.status == common::ParticleStatus::broken;
-    split.particles.failure_mode.push_back(failed ? result.failure_mode : FailureMode::none);
-    if (result.status == common::ParticleStatus::broken)
-      record_fragments(frame, i, particle, next_id, handed_down, split);
-    else
-      append_cracks(split, particles.id[i], result.cracks);
-  }
-  for (const auto& [id, cracks] : handed_down) append_cracks(split, id, cracks);
-}
-
-void FrameSolver::Implementation::warn_of_unbalance(const common::Frame& frame, const std::vector<Case>& cases) {
-  // A particle that hardly carries anything may be far out of balance without meaning anything.
-  std::vector<double> carried(cases.size(), 0.0);
-  double sum = 0;
-  int analysed = 0;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!cases[i].entry) continue;
-    for (const Load& load : cases[i].loads) carried[i] += load.force.norm();
-    sum += carried[i];
-    ++analysed;
-  }
-  int count = 0;
-  std::size_t worst = 0;
-  double largest = 0;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!cases[i].entry || carried[i] < kHardlyLoaded * sum / analysed) continue;
-    const double unbalance = IntactModel::unbalance(cases[i].loads);
-    if (unbalance > kUnbalanceWarning) ++count;
-    if (unbalance > largest) {
-      largest = unbalance;
-      worst = i;
-    }
-  }
-  if (count > 0)
-    warnings.push_back(fmt::format(
-        "frame {}: the contact forces of {} of {} analysed particles are out of balance by more than {:.0f} % (worst: "
-        "particle {}, {:.1f} %); the rest is taken as a body force",
-        frame.frame, count, analysed, 100 * kUnbalanceWarning, frame.particles.id[worst], 100 * largest));
 }
 
 FrameSolver::FrameSolver(const common::Scene& scene, int threads)
@@ -369,7 +155,7 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
 
   CrackState state;
   std::vector<common::Rotation> rotation;
-  std::vector<Case> cases;
+  std::vector<ParticleCase> cases;
   // Room for the ids of all fragments that there can be.
   const std::int64_t largest = std::max(frame.next_id, frame.particles.id.empty() ? 0 : frame.particles.id.back());
   if (largest >= std::numeric_limits<std::int64_t>::max() - 2 * std::ssize(frame.particles.id))
@@ -403,8 +189,9 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
   split.config_hash = self.config_hash;
   {
     const PhaseTimer timer(self.seconds, "record");
-    self.record(frame, rotation, cases, split);
-    self.warn_of_unbalance(frame, cases);
+    record(frame, rotation, self.options, cases, split);
+    if (std::string warning = unbalance_warning(frame, cases); !warning.empty())
+      self.warnings.push_back(std::move(warning));
   }
   self.counts["particles"] = static_cast<std::int64_t>(frame.particles.size());
   self.counts["contacts"] = static_cast<std::int64_t>(frame.contacts.size());
