@@ -11,6 +11,7 @@ from .run.progress import make_progress
 from .run.results import Results
 from .run.run_directory import RunDirectory
 from .run.summary import wall_seconds, write_summary
+from .run.xdmf import write_xdmf
 
 
 class Parser(argparse.ArgumentParser):
@@ -55,7 +56,7 @@ def run(arguments=None):
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
                         help="override a key of the scene, for example --set seed=2")
     parser.add_argument("--threads", type=positive, help="threads of dem and of xfem")
-    parser.add_argument("--no-report", action="store_true", help="write summary.json only")
+    parser.add_argument("--no-report", action="store_true", help="write summary.json only, no report.html and no run.xdmf")
     options = parser.parse_args(arguments)
 
     def work():
@@ -78,7 +79,7 @@ def is_concluded(directory, with_report):
 
 
 def conclude(directory, with_report):
-    """Summary and report of one finished run; the time that the report took goes into both ledger and summary."""
+    """Summary of one finished run, with its report and run.xdmf, whose time goes into both ledger and summary."""
     results = Results(directory)
     write_summary(directory, results.summary)
     if not with_report:
@@ -87,6 +88,7 @@ def conclude(directory, with_report):
         return
     from .report.page import write_report  # matplotlib is slow to load: only where figures are made
     begin = time.perf_counter()
+    write_xdmf(directory)
     write_report([results], directory.report_file)
     with Ledger(directory.ledger_file) as ledger:
         ledger.write("report", path=directory.report_file.name,
@@ -97,7 +99,8 @@ def conclude(directory, with_report):
 
 def report(arguments=None):
     parser = Parser(prog="pipeline/report", description="Figures, tables and one self-contained report.html of a run; "
-                    "of several runs, a comparison. The path of the report is all that it writes to stdout.")
+                    "of several runs, a comparison; run.xdmf of each for ParaView. The path of the report is all that "
+                    "it writes to stdout.")
     parser.add_argument("directories", type=Path, nargs="+", metavar="DIR", help="run directories")
     parser.add_argument("--out", type=Path, help="file to write (default: report.html in DIR; comparison.html in the "
                         "first DIR if there are several)")
@@ -108,6 +111,7 @@ def report(arguments=None):
         runs = [Results(RunDirectory(path)) for path in options.directories]
         for one in runs:
             write_summary(one.directory, one.summary)
+            write_xdmf(one.directory)
         first = runs[0].directory
         target = options.out or (first.report_file if len(runs) == 1 else first.path / "comparison.html")
         write_report(runs, target)

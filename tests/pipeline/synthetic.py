@@ -162,6 +162,8 @@ def write_split(path, k, frame_hash, ids, made, refusals=()):
     with h5py.File(path, "w") as file:
         file["particles/id"] = ids
         file["particles/status"] = np.isin(ids, [one["parent"] for one in made]).astype(np.int32) * 3
+        file["particles/failure_mode"] = np.zeros(len(ids), dtype=np.int32)
+        file["particles/mean_stress"] = 1e6 * np.random.default_rng(k).uniform(-1, 5, (len(ids), 3))
         file["broken/parent"] = np.array([one["parent"] for one in made], dtype=np.int64)
         file["broken/path"] = np.array([one["path"] for one in made]).reshape(-1, 2, 2)
         file["fragments/id"] = np.array([i for one in made for i in one["id"]], dtype=np.int64)

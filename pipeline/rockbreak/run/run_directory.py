@@ -1,6 +1,7 @@
 """A run directory: where its files stand, which frames are valid, and its lock.
 
-DIR/case.yaml, run.jsonl, frames/000000.h5, splits/000000.h5, summary.json, report.html, figures/*.png
+DIR/case.yaml, run.jsonl, frames/000000.h5, splits/000000.h5, summary.json, report.html, figures/*, run.xdmf,
+paraview/000000.h5
 """
 import fcntl
 import os
@@ -24,6 +25,7 @@ class RunDirectory:
     summary_file = property(lambda self: self.path / "summary.json")
     report_file = property(lambda self: self.path / "report.html")
     figures = property(lambda self: self.path / "figures")
+    xdmf_file = property(lambda self: self.path / "run.xdmf")
 
     def frame_file(self, k):
         return self.path / "frames" / f"{k:06d}.h5"
@@ -78,7 +80,7 @@ class RunDirectory:
         for number in self.split_numbers():
             if k is None or number > k:
                 self.split_file(number).unlink()
-        for folder in (".", "frames", "splits", "prepared", "figures"):
+        for folder in (".", "frames", "splits", "prepared", "figures", "paraview"):
             for leftover in (self.path / folder).glob("*.tmp"):
                 leftover.unlink()
 
