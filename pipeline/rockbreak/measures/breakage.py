@@ -1,7 +1,7 @@
 """Breakages of a run, one row for each broken particle; families and generations of fragments in one frame.
 
-A split's breakages are those that `xfem` found in the frame of the same number; the next frame holds their fragments. The
-final frame is analysed too, but its split is never applied: `Breakages.applied` tells.
+A split's breakages are those that `xfem` found in the frame of the same number; the next frame holds their fragments.
+The final frame is analysed too, but its split is never applied: `Breakages.applied` tells.
 """
 from dataclasses import dataclass, fields
 from pathlib import Path

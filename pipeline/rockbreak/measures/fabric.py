@@ -149,7 +149,7 @@ def frame_anisotropies(frame):
 
 @dataclass(frozen=True)
 class PolarHistogram:
-    """Contacts by direction, for Figs. 9-11 and 17-19: K bins around the circle, each contact in both its directions."""
+    """Contacts by direction, for Figs. 9-11, 17-19: K bins around the circle, each contact in both its directions."""
     edges: np.ndarray               # K + 1, from 0 to 2 pi [rad]
     contacts: np.ndarray            # K
     mean_normal_force: np.ndarray   # K [N]; nan without a contact, as the rest

@@ -90,7 +90,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Split:
-    """One split/1: what xfem found in the N particles of a frame. Axes of lines and cracks: the particle's body axes."""
+    """One split/1: what xfem found in the N particles of a frame. Lines and cracks stand in the particle's body axes."""
     number: int
     id: np.ndarray                 # N
     status: np.ndarray             # N, see STATUS
@@ -118,8 +118,8 @@ def _reader(file):
         if name not in file:
             if default is not None:
                 return default
-            raise RockbreakError(BAD_INPUT, f"{file.filename}: found no dataset {name}; expected one, see the schema of "
-                                 "frames and splits")
+            raise RockbreakError(BAD_INPUT, f"{file.filename}: found no dataset {name}; expected one, as in all "
+                                 "frames or splits")
         return file[name][:]
     return read
 

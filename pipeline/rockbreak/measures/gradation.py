@@ -1,7 +1,7 @@
 """Sizes of particles: gradation curves, breakage indices (Marsal, Hardin, Einav) and fractal dimension.
 
-A gradation is by mass, which in the plane is area: all of a run's rock has one density. Curves are those of the particles
-themselves, not of sieve classes; where an index depends on sieves, they are an argument.
+A gradation is by mass, which in the plane is area: all of a run's rock has one density. Curves are those of the
+particles themselves, not of sieve classes; where an index depends on sieves, they are an argument.
 """
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ def _pairs(offset):
 
 
 def sieve_size(vertices, offset):
-    """N smallest caliper widths [m] of convex outlines (V x 2, first rows N + 1): the slot that a particle falls through.
+    """N smallest caliper widths [m] of convex outlines (V x 2, first rows N + 1): the slot that each falls through.
 
     The smallest width of a convex polygon is across one of its edges (rotating calipers).
     """
@@ -89,7 +89,7 @@ def gradation(size, mass):
 
 
 def frame_gradation(frame, size="equivalent", boundary=True):
-    """Gradation of a Frame by "equivalent" diameter, "sieve" or longest "diameter"; with its boundary particles or not."""
+    """Gradation of a Frame by "equivalent" diameter, "sieve" or longest "diameter"; `boundary`: with these particles."""
     chosen = slice(None) if boundary else ~frame.boundary
     return gradation(SIZES[size](frame)[chosen], frame.area[chosen])
 
@@ -105,7 +105,7 @@ def standard_sieves(lower, upper, ratio=2 ** 0.25):
 
 
 def marsal(before, after, sieves):
-    """Marsal's (1967) breakage index B_g [-]: the sum of the positive differences before - after of the shares retained.
+    """Marsal's (1967) breakage index B_g [-]: sum of the positive differences before - after of the shares retained.
 
     `sieves` [m], ascending: a share is retained between two of them, below the first or above the last. It grows with
     finer sieves; a finer set than the sizes' spread turns every change into breakage.
@@ -118,9 +118,9 @@ def hardin(before, after, limit):
     """Hardin's (1985) relative breakage B_r = B_t / B_p [-] in closed form for step curves.
 
     The potential B_p is the area between the curve before and the vertical at the size `limit` [m], over log10 d: the
-    mean by mass of log10(d / limit). B_t is the area between the two curves, as far as they are coarser than `limit`. Hardin
-    takes 0.074 mm, silt, which rockfill whose pieces have a smallest size cannot reach; take that size instead
-    (`smallest_piece`), and B_r = 1 where everything is broken down to it. nan without a potential.
+    mean by mass of log10(d / limit). B_t is the area between the two curves, coarser than `limit`. Hardin takes 0.074 mm,
+    silt, which rockfill whose pieces have a smallest size cannot reach; take that size instead (`smallest_piece`), and
+    B_r = 1 where everything is broken down to it. nan without a potential.
     """
     potential = before.mean_log(limit)
     return (potential - after.mean_log(limit)) / potential if potential > 0 else np.nan
@@ -129,8 +129,8 @@ def hardin(before, after, limit):
 def einav(before, after, limit, exponent=0.4):
     """Einav's (2007) relative breakage [-]: as Hardin's, but towards an ultimate fractal gradation, not one size.
 
-    Ultimate: F(d) = (d^exponent - limit^exponent) / (largest^exponent - limit^exponent), from `limit` to the largest size
-    before; exponent = 3 - fractal dimension (2 - the dimension counted in the plane); 0.4 for 2.6 in space.
+    Ultimate: F(d) = (d^exponent - limit^exponent) / (largest^exponent - limit^exponent), from `limit` to the largest
+    size before; exponent = 3 - fractal dimension (2 - the dimension counted in the plane); 0.4 for 2.6 in space.
     """
     largest, initial = before.size[-1], before.mean_log(limit)
     ratio = np.log(largest / limit)

@@ -5,8 +5,8 @@ sigma_ij = 1/A sum_c f_i l_j    (13)   l: from centroid to centroid, f: the forc
 A particle's stress is read in two ways. "virial": its mean stress (Eq. 13 for one particle). "held": what a finite
 element average becomes if two contact points are fixed in both directions, as a literal reading of the paper has it;
 a pair of opposite reactions along the line through them then falsifies the mean. Splits hold the element averages of
-`xfem` (`element_stresses`). They take the contact points onto the outline, where `dem` has them within the overlap: they
-differ from the virial by half of the overlap's depth over the size, in the mean 2 % at 2 MPa, most in small fragments.
+`xfem` (`element_stresses`). It takes the contact points onto the outline, where `dem` has them within the overlap: the
+two differ by the overlap's depth over the size, in the mean by 2 % at 2 MPa, most in small fragments.
 """
 import numpy as np
 
@@ -45,7 +45,7 @@ def frame_stresses(frame):
 
 
 def element_stresses(frame, split):
-    """N x 3 [Pa] in the frame's order: the split's averages over the finite elements, the virial of particles it lacks."""
+    """N x 3 [Pa] in the frame's order: the split's averages over the elements; the virial of particles that it lacks."""
     stress = frame_stresses(frame)
     row = frame.rows(split.id)
     known = (row >= 0) & np.isfinite(split.stress).all(axis=1)

@@ -77,8 +77,8 @@ def test_a_branch_length_that_varies_with_direction_changes_eq_13_in_the_same_or
 
 
 def test_standard_errors_are_the_scatter_of_repeated_samples():
-    """600 samples of 800 contacts: their own scatter, against the mean of the errors that the fits claim. The scatter of
-    600 numbers is known to 3 %; the forces are noisier where they are larger."""
+    """600 samples of 800 contacts: their own scatter, against the mean of the errors that the fits claim. The scatter
+    of 600 numbers is known to 3 %; the forces are noisier where they are larger."""
     rng = np.random.default_rng(5)
     fits = []
     for _ in range(600):
