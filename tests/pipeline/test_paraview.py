@@ -163,7 +163,6 @@ real = xdmf.arrays_of
 
 
 def test_a_run_and_a_report_write_it_and_without_a_report_nobody_does(tmp_path):
-    """Of a run with one frame more than when it was interrupted."""
     fake_children.install(tmp_path / "bin")
     scene = tmp_path / "scene.yaml"
     scene.write_text(yaml.safe_dump({**CASE, "shear": {**CASE["shear"], "frames": 3}}))

@@ -2,7 +2,7 @@
 from pathlib import Path
 
 from .study import read_study
-from ..campaign.command import add_campaign_arguments, print_plan, raise_failures
+from ..campaign.command import add_campaign_arguments, print_plan, raise_failures, threads_each
 from ..campaign.carry_out import carry_out
 from ..campaign.tables import run_rows, write_csv
 from ..command_line import Parser, guarded
@@ -19,7 +19,7 @@ def accuracy(arguments=None):
 
     def work():
         study = read_study(options.study, options.overrides)
-        plan = joined(options.out, [make_plan(subject.campaign, options.out, options.threads)
+        plan = joined(options.out, [make_plan(subject.campaign, options.out, threads_each(options))
                                     for subject in study.subjects])
         if options.dry_run:
             print_plan(plan)

@@ -53,10 +53,11 @@ def make_jobs(plan):
             after = sample_jobs.get(run.sample.hash)
             if after is None:
                 after = sample_jobs[run.sample.hash] = Job(f"samples/{run.sample.out.name}", run.sample.command,
-                                                           plan.out / "logs" / f"sample_{run.sample.out.name}.log")
+                                                           plan.out / "logs" / f"sample_{run.sample.out.name}.log",
+                                                           effort=run.sample.effort)
                 jobs.append(after)
                 of["samples"].append((run.sample, after))
-        jobs.append(Job(run.name, run.command, plan.out / "logs" / f"{run.name}.log", after))
+        jobs.append(Job(run.name, run.command, plan.out / "logs" / f"{run.name}.log", after, run.effort))
         of["runs"].append((run, jobs[-1]))
     return jobs, of
 

@@ -1,4 +1,5 @@
 """`pipeline/campaign`: arguments, messages, exit codes."""
+import os
 import shlex
 import sys
 from pathlib import Path
@@ -14,10 +15,18 @@ from .plan import make_plan
 def add_campaign_arguments(parser):
     parser.add_argument("--out", type=Path, required=True, help="directory of the campaign")
     parser.add_argument("-j", "--jobs", type=positive, default=1, metavar="N", help="local processes (default 1)")
-    parser.add_argument("--threads", type=positive, help="threads of dem and of xfem in each process")
+    parser.add_argument("--threads", type=positive, help="threads of dem and of xfem in each process (default with "
+                        "-j N: the N-th part of the processors)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
                         help="a key of the scene for all runs")
     parser.add_argument("--dry-run", action="store_true", help="print what would run, and run nothing")
+
+
+def threads_each(options):
+    """Threads of each process: several at a time must not crowd each other out. Results do not depend on it."""
+    if options.threads is None and options.jobs > 1:
+        return max(1, len(os.sched_getaffinity(0)) // options.jobs)
+    return options.threads
 
 
 def campaign(arguments=None):
@@ -30,7 +39,7 @@ def campaign(arguments=None):
 
     def work():
         table = read_campaign(options.campaign, options.overrides)
-        plan = make_plan(table, options.out, options.threads)
+        plan = make_plan(table, options.out, threads_each(options))
         if options.dry_run:
             print_plan(plan)
             return

@@ -1,5 +1,5 @@
-"""Local processes of a campaign: at most so many at a time, each after the one that it needs; one that fails stops
-nobody but those that need it."""
+"""Local processes of a campaign: at most so many at a time, each after the one that it needs; of those that could start,
+the one whose work, with what waits for it, takes longest. One that fails stops nobody but those that need it."""
 import json
 import signal
 import time
@@ -19,6 +19,7 @@ class Job:
     command: list
     log: Path
     after: "Job | None" = None
+    effort: float = 1.0     # how long it takes, relative to the others
     state: str = "waiting"  # waiting, running, done, failed
     code: int = 0
     reason: str = ""
@@ -72,6 +73,28 @@ class Job:
         return errors[-1] if errors else f"ended with exit code {self.code} and no message"
 
 
+def path_lengths(jobs):
+    """Name -> effort of a job and of the longest chain that waits for it."""
+    waiting = {}
+    for job in jobs:
+        if job.after:
+            waiting.setdefault(job.after.name, []).append(job)
+
+    def length(job):
+        return job.effort + max((length(one) for one in waiting.get(job.name, [])), default=0.0)
+
+    return {job.name: length(job) for job in jobs}
+
+
+def next_jobs(jobs, slots):
+    """Those to start now, longest path first, in their order where paths are equal: no slot stays empty while a job is
+    ready, and no long run is left for the end."""
+    ready = [job for job in jobs if job.state == "waiting" and (job.after is None or job.after.state == "done")]
+    lengths = path_lengths([job for job in jobs if job.state == "waiting"])
+    ready.sort(key=lambda job: -lengths[job.name])
+    return ready[:slots - sum(job.state == "running" for job in jobs)]
+
+
 def run_jobs(jobs, slots, lock, on_change):
     """Runs all jobs; `on_change(job)` is told of each start and end, `on_change(None)` that time goes by.
     Children are started on this thread: the kernel ends them when the thread that started them is gone."""
@@ -85,9 +108,7 @@ def run_jobs(jobs, slots, lock, on_change):
                     job.state, job.code = "failed", job.after.code
                     job.reason = f"its sample could not be prepared: {job.after.reason}"
                     on_change(job)
-            free = slots - sum(job.state == "running" for job in jobs)
-            ready = [job for job in jobs if job.state == "waiting" and (job.after is None or job.after.state == "done")]
-            for job in ready[:free]:
+            for job in next_jobs(jobs, slots):
                 job.start(lock)
                 on_change(job)
             if all(job.state in ("done", "failed") for job in jobs):

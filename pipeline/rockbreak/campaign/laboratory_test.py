@@ -6,7 +6,7 @@ import json
 import yaml
 
 from ..accuracy.measures import Measure
-from .cases import as_words, explained, hash_of, without
+from .cases import as_words, explained, hash_of, value_at, without
 from ..run.child import executable
 
 # These say where numbers are from or what another program does with the test, not what it is.
@@ -63,6 +63,11 @@ def prepared_elsewhere(case):
 def identity(case, sample_hash):
     """Hash of all that decides the results of a run."""
     return hash_of([without(case, PLACES), sample_hash])
+
+
+def effort(case):
+    """How long a test takes, relative to others, so that long ones start first: about as its mesh has nodes."""
+    return value_at(case, "mesh.nodes") or 1
 
 
 def run_command(test, keys, out, report, threads):

@@ -20,6 +20,7 @@ class Sample:
     out: Path
     command: list
     kind: ModuleType
+    effort: float  # relative time, as that of a run
 
     def is_finished(self):
         return self.kind.sample_is_finished(self.out)
@@ -40,6 +41,7 @@ class PlannedRun:
     summary: dict | None = field(default=None)
 
     name = property(lambda self: self.out.name)
+    effort = property(lambda self: self.kind.effort(self.case))
 
     def is_finished(self):
         return self.kind.is_finished(self.out, self.report)
@@ -111,7 +113,7 @@ def plan_sample(campaign, variation, keys, case, value, out, threads):
     name = type(variation)(tuple(seen), variation.keys).name if seen else "sample"
     directory = directory_of(out / "samples", name, value)
     return Sample(value, directory, kind.sample_command(campaign.base, keys, case, campaign.shared_sample, directory,
-                                                        threads), kind)
+                                                        threads), kind, kind.sample_effort(case))
 
 
 def plan_run(campaign, variation, keys, case, value, out, sample, threads):
