@@ -167,6 +167,7 @@ def write_split(path, k, frame_hash, ids, made, refusals=()):
         file["broken/parent"] = np.array([one["parent"] for one in made], dtype=np.int64)
         file["broken/path"] = np.array([one["path"] for one in made]).reshape(-1, 2, 2)
         file["fragments/id"] = np.array([i for one in made for i in one["id"]], dtype=np.int64)
+        file["fragments/parent"] = np.repeat(np.array([one["parent"] for one in made], dtype=np.int64), 2)
         file["fragments/vertex_offset"] = np.cumsum([0] + [len(half) for half in halves])
         file["fragments/vertices"] = np.vstack(halves) if halves else np.zeros((0, 2))
         file["refusals/particle"] = np.array([particle for particle, _ in refusals], dtype=np.int64)
