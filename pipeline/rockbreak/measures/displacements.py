@@ -82,8 +82,8 @@ def displacements_since(frame, earlier):
 
 
 def rotations_since(frame, earlier):
-    """N rotations [rad] since an earlier Frame of the run, counter-clockwise, full turns included; nan where no ancestor
-    is known."""
+    """N rotations [rad] since an earlier Frame of the run, counter-clockwise, full turns included; nan where no
+    ancestor is known."""
     return _since(frame.angle, earlier.angle, ancestors(frame, earlier))
 
 
@@ -107,7 +107,7 @@ def pairs_within(points, radius):
 
 
 def local_gradients(reference, displacement, radius):
-    """N x 2 x 2 gradients: around each particle, by least squares over the differences to all neighbours within `radius`.
+    """N x 2 x 2 gradients: around each particle, by least squares over its differences to the neighbours within `radius`.
 
     Exact for affine motion. nan with fewer than two neighbours, or all on one line. Falk and Langer (1998); a radius of
     1.5 to 3 diameters [m] is usual.

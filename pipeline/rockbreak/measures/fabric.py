@@ -21,8 +21,12 @@ sin(phi) = | a e(theta_0) + a_n e(theta_n) + a_t e(theta_shear) | / 2 / (1 + a a
 
 e(theta) = (cos 2 theta, sin 2 theta): `sin_phi_general`, which is Eq. 10 where the three directions are one.
 
-How few contacts are too few: n contacts without any preferred direction give a = sqrt(pi / n) in the mean
+How few contacts are too few: n contacts drawn without any preferred direction give a = sqrt(pi / n) in the mean
 (`a_of_chance`), 0.04 with 2000 and 0.18 with 100, and an error of sqrt(2 / n) in each fit of a.
+
+Contacts of a packing are not drawn independently, as the standard errors suppose: those around one particle keep apart,
+forces balance. Over 75 isotropic samples of about 1200 particles the components of a, a_n, a_t scattered by 0.018,
+0.026, 0.008, where the fits claimed 0.030, 0.023, 0.005: right for a_n, too large for a, too small for a_t.
 """
 from dataclasses import dataclass
 
@@ -93,9 +97,8 @@ class Anisotropies:
 def fit_anisotropies(normal, normal_force, shear_force):
     """Anisotropies of C contacts: unit normals (C x 2), normal and shear forces (C) [N]. None below 3 contacts.
 
-    Contacts that carry nothing are not counted. Standard errors take the contacts for independent and let the scatter
-    of the forces depend on direction (sandwich estimate); neighbours in a force chain are not independent, so that
-    they are lower bounds. They are to first order: nothing is known of an a below `a_of_chance`.
+    Contacts that carry nothing are not counted. Standard errors are to first order, take the contacts for independent
+    (see the file's head) and let the scatter of the forces depend on direction (sandwich estimate).
     """
     loaded = normal_force > 0
     normal, normal_force, shear_force = normal[loaded], normal_force[loaded], shear_force[loaded]

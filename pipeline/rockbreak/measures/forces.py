@@ -66,7 +66,8 @@ def exponential_tail(normal_force, start=1.0):
 def power_of_weak(normal_force, end=1.0):
     """(alpha, standard error) of P(x) ~ x^alpha below x = `end`; (nan, nan) without forces there.
 
-    Maximum likelihood; Radjai, Jean, Moreau and Roux (1996). alpha = 0: all weak forces equally likely; below 0: the weakest prevail.
+    Maximum likelihood; Radjai, Jean, Moreau and Roux (1996). alpha = 0: all weak forces equally likely; below 0: the
+    weakest prevail.
     """
     f = normal_force[normal_force > 0]
     x = f / f.mean() if len(f) else f

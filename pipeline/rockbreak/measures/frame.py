@@ -90,7 +90,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Split:
-    """One split/1: what xfem found in the N particles of a frame. Lines and cracks stand in the particle's body axes."""
+    """One split/1: what xfem found in the N particles of a frame. Lines and cracks stand in a particle's body axes."""
     number: int
     id: np.ndarray                 # N
     status: np.ndarray             # N, see STATUS

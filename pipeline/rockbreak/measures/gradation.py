@@ -89,7 +89,7 @@ def gradation(size, mass):
 
 
 def frame_gradation(frame, size="equivalent", boundary=True):
-    """Gradation of a Frame by "equivalent" diameter, "sieve" or longest "diameter"; `boundary`: with these particles."""
+    """Gradation of a Frame by "equivalent" diameter, "sieve" or longest "diameter"; `boundary`: those as well."""
     chosen = slice(None) if boundary else ~frame.boundary
     return gradation(SIZES[size](frame)[chosen], frame.area[chosen])
 
@@ -118,9 +118,9 @@ def hardin(before, after, limit):
     """Hardin's (1985) relative breakage B_r = B_t / B_p [-] in closed form for step curves.
 
     The potential B_p is the area between the curve before and the vertical at the size `limit` [m], over log10 d: the
-    mean by mass of log10(d / limit). B_t is the area between the two curves, coarser than `limit`. Hardin takes 0.074 mm,
-    silt, which rockfill whose pieces have a smallest size cannot reach; take that size instead (`smallest_piece`), and
-    B_r = 1 where everything is broken down to it. nan without a potential.
+    mean by mass of log10(d / limit). B_t is the area between the two curves, coarser than `limit`. Hardin takes 0.074
+    mm, silt, which rockfill whose pieces have a smallest size cannot reach; take that size instead (`smallest_piece`),
+    and B_r = 1 where everything is broken down to it. nan without a potential.
     """
     potential = before.mean_log(limit)
     return (potential - after.mean_log(limit)) / potential if potential > 0 else np.nan

@@ -52,7 +52,7 @@ class Windows:
                     / self._sums(np.where(known, self.tiles.area, 0.0)))
 
     def stress(self, stress):
-        """len(y) x len(x) x 3 mean stress of the windows, voids (stress 0) included; of N x 3 particle stresses [Pa]."""
+        """len(y) x len(x) x 3 mean stress of the windows, voids (stress 0) included; of N x 3 of particles [Pa]."""
         return np.stack([self._sums(component[self.tiles.polygon] * self.tiles.area)
                          for component in np.asarray(stress).T], axis=-1) / self.size ** 2
 

@@ -45,7 +45,7 @@ def frame_stresses(frame):
 
 
 def element_stresses(frame, split):
-    """N x 3 [Pa] in the frame's order: the split's averages over the elements; the virial of particles that it lacks."""
+    """N x 3 [Pa] in the frame's order: the split's averages over elements; the virial of particles that it lacks."""
     stress = frame_stresses(frame)
     row = frame.rows(split.id)
     known = (row >= 0) & np.isfinite(split.stress).all(axis=1)

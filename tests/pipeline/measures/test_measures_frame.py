@@ -21,7 +21,8 @@ def plain_frame(position, half=0.5, **given):
         generation=np.zeros(n, int), position=position, angle=np.zeros(n), displacement=np.zeros((n, 2)),
         area=np.full(n, 4.0 * half ** 2), boundary=np.zeros(n, bool), offset=4 * np.arange(n + 1),
         body_vertices=np.tile(corners, (n, 1)), a=a, b=b, point=position[a] + 0.5 * branch, normal=normal, force=normal,
-        normal_force=np.ones(len(a)), shear_force=np.zeros(len(a)), overlap_area=np.zeros(len(a)), ring=np.zeros(0, int))
+        normal_force=np.ones(len(a)), shear_force=np.zeros(len(a)), overlap_area=np.zeros(len(a)),
+        ring=np.zeros(0, int))
     return measures.Frame(**(values | given))
 
 
