@@ -122,7 +122,18 @@ def sample_file(out):
 
 def sample_is_finished(out):
     """Frame 0 is written after the sample."""
-    return sample_file(out).exists() and RunDirectory(out).frame_file(0).exists()
+    return all(file.exists() for file in sample_results(out))
+
+
+def sample_results(out):
+    """What a finished sample has written."""
+    return [sample_file(out), RunDirectory(out).frame_file(0)]
+
+
+def results(out, report):
+    """What a finished run has written last."""
+    directory = RunDirectory(out)
+    return [directory.summary_file, *([directory.report_file] if report else [])]
 
 
 def read_summary(out):

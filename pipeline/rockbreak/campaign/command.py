@@ -10,6 +10,7 @@ from .tables import run_rows, write_csv
 from ..command_line import Parser, guarded, positive
 from ..errors import RockbreakError
 from .plan import make_plan
+from .snakemake import tables_command, write_snakemake
 
 
 def add_campaign_arguments(parser):
@@ -35,6 +36,8 @@ def campaign(arguments=None):
                     "campaign.html is all that it writes to stdout.")
     parser.add_argument("campaign", type=Path, help="for example configs/campaign_nonbreakable.yaml")
     add_campaign_arguments(parser)
+    parser.add_argument("--snakemake", action="store_true", help="write DIR/Snakefile, whose path goes to stdout, and "
+                        "run nothing: for Snakemake, on this machine or on a cluster")
     options = parser.parse_args(arguments)
 
     def work():
@@ -42,6 +45,9 @@ def campaign(arguments=None):
         plan = make_plan(table, options.out, threads_each(options))
         if options.dry_run:
             print_plan(plan)
+            return
+        if options.snakemake:
+            print(write_snakemake(plan, tables_command(options.campaign, options.out, options.overrides)))
             return
         seconds = carry_out(plan, parser.prog, options.jobs)
         conclude(table, plan, seconds)
