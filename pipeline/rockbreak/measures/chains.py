@@ -4,8 +4,8 @@ A particle is highly stressed if its major principal stress is above the mean ov
 are linked if the line between their centres is within `angle` (45 degrees there) of the major principal direction of
 each. Three or more linked particles are a chain. Each particle goes on at most once to either side along its stress, so
 that a chain does not branch: where several links leave one side, the one with the smallest angle (the larger of those
-at its two ends) comes first. Boundary particles belong to no chain: `dem` has no forces among them, so that their stress
-lacks a part.
+at its two ends) comes first. Boundary particles belong to no chain: `dem` has no forces among them, so that their
+stress lacks a part.
 """
 from dataclasses import dataclass
 

@@ -107,7 +107,7 @@ def pairs_within(points, radius):
 
 
 def local_gradients(reference, displacement, radius):
-    """N x 2 x 2 gradients: around each particle, by least squares over its differences to the neighbours within `radius`.
+    """N x 2 x 2 gradients: around each particle, by least squares over its differences to neighbours within `radius`.
 
     Exact for affine motion. nan with fewer than two neighbours, or all on one line. Falk and Langer (1998); a radius of
     1.5 to 3 diameters [m] is usual.
