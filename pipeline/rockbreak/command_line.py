@@ -104,6 +104,7 @@ def report(arguments=None):
     parser.add_argument("directories", type=Path, nargs="+", metavar="DIR", help="run directories")
     parser.add_argument("--out", type=Path, help="file to write (default: report.html in DIR; comparison.html in the "
                         "first DIR if there are several)")
+    parser.add_argument("--figures", type=Path, metavar="FOLDER", help="every figure as SVG, PNG and CSV into a folder too")
     options = parser.parse_args(arguments)
 
     def work():
@@ -114,7 +115,7 @@ def report(arguments=None):
             write_xdmf(one.directory)
         first = runs[0].directory
         target = options.out or (first.report_file if len(runs) == 1 else first.path / "comparison.html")
-        write_report(runs, target)
+        write_report(runs, target, options.figures)
         print(target)
 
     return guarded(parser.prog, work)

@@ -1,16 +1,23 @@
 """How the figures look: one palette (Okabe and Ito, safe for colour-blind readers), quiet axes, two file formats."""
 import base64
+import html
 import io
 import re
 
 import matplotlib
+import numpy as np
 
 matplotlib.use("Agg")
+from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
+from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#AA4499", "#E69F00", "#56B4E9"
-INK, GREY, LIGHT = "#1f2933", "#7b8794", "#e4e7eb"
+INK, SOFT, GREY, LIGHT = "#1f2933", "#52606d", "#7b8794", "#e4e7eb"
+CLASS_COLORS = ("#c3ccd5", "#e69f00", "#5d1451")  # low, medium and high; weak, moderate and strong: ever darker
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
+GENERATION_COLORS = ("#e3e7eb", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154")  # viridis from the first breakage on
+MARKERS = "oDs^vP"
 LINES = ("-", "--", "-.", (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), "-")
 
 matplotlib.rcParams.update({
@@ -21,6 +28,11 @@ matplotlib.rcParams.update({
     "ytick.labelcolor": INK, "text.color": INK, "legend.frameon": False, "legend.fontsize": 8.5,
     "lines.linewidth": 1.7, "lines.solid_capstyle": "round", "svg.fonttype": "path", "savefig.facecolor": "white",
 })
+
+
+def sequence(count):
+    """Colours of ordered things (pressures, strains): viridis without its pale end, which is lost on white."""
+    return [matplotlib.colors.to_hex(color) for color in matplotlib.colormaps["viridis"](np.linspace(0.0, 0.8, count))]
 
 
 def curve_figure(xlabel="axial strain [%]", ylabel=""):
@@ -40,13 +52,25 @@ def thinned(x, y, points=1200):
     return x[keep], y[keep]
 
 
-def svg_text(figure, salt):
-    """The figure as an <svg> element for a page: no prologue, no metadata, ids of its own."""
+def svg_document(figure, salt):
+    """The figure as an SVG file; its ids depend on `salt` alone, its paths have two decimals of a point."""
+    buffer = io.StringIO()
     with matplotlib.rc_context({"svg.hashsalt": salt}):
-        buffer = io.StringIO()
-        figure.savefig(buffer, format="svg", metadata={"Date": None})
-    text = buffer.getvalue()
+        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})  # savefig would draw twice
+    return re.sub(r' d="[^"]*"', lambda path: tightened(path[0]), buffer.getvalue())
+
+
+def tightened(path):
+    return re.sub(r"\s*([MLQCz])\s*", r"\1", re.sub(r"(\.\d\d)\d+", r"\1", path))
+
+
+def svg_text(figure, salt, label=None):
+    """The figure as an <svg> element for a page: no prologue, no metadata, ids of its own; `label` is what a screen
+    reader says."""
+    text = svg_document(figure, salt)
     text = text[text.index("<svg"):]
+    if label:
+        text = f'<svg role="img" aria-label="{html.escape(label, quote=True)}"' + text[len("<svg"):]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r' (width|height)="[0-9.]+pt"', "", text, count=2)
     # Glyphs are shared by name between figures of one page; the other ids are salted already.
@@ -55,7 +79,8 @@ def svg_text(figure, salt):
 
 def png_bytes(figure, dpi):
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+    figure.dpi = dpi
+    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
     return buffer.getvalue()
 
 

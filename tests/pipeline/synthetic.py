@@ -178,12 +178,13 @@ def write_split(path, k, frame_hash, ids, made, refusals=()):
 
 
 def write_run(directory, frames=21, strain=0.10, breakable=True, size=(8, 6), breaks=lambda k: 1 if k % 2 else 0,
-              anisotropy=(0.3, 0.5, 0.2), contacts=None):
+              anisotropy=(0.3, 0.5, 0.2), contacts=None, pressure=2e6):
     """A finished run: `frames` frames to `strain`; split k breaks `breaks(k)` particles; `contacts` in every frame,
     two for each particle if not told."""
     directory.mkdir(parents=True, exist_ok=True)
     case = json.loads(json.dumps(CASE))
     case["shear"]["axial_strain"] = strain
+    case["preparation"]["confining_pressure"] = pressure
     if not breakable:
         case["effects"].remove("breakage")
     (directory / "case.yaml").write_text(yaml.safe_dump(case, sort_keys=False))
@@ -196,7 +197,7 @@ def write_run(directory, frames=21, strain=0.10, breakable=True, size=(8, 6), br
         strains = np.zeros(1) if k == 0 else end - span + span * (np.arange(rows) + 1) / rows
         state = contacts_of_known_anisotropy(contacts or 2 * len(assembly.id),
                                              *(value * min(1.0, end / 0.04) for value in anisotropy))
-        history = history_rows(max(0, (k - 1) * rows + 1), strains, 2e6, len(assembly.id), 2 * len(assembly.id))
+        history = history_rows(max(0, (k - 1) * rows + 1), strains, pressure, len(assembly.id), 2 * len(assembly.id))
         frame_hash = write_frame(directory / "frames" / f"{k:06d}.h5", assembly, k, end, k == frames - 1, state,
                                  history, step=k * rows)
         events.append({"event": "frame", "frame": k, "time": float(k), "seconds": {"dem": 1.0}})

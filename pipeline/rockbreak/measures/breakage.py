@@ -112,11 +112,13 @@ def breakages_of(frame, split, final=False):
 def read_breakages(directory):
     """Breakages of a whole run: of `frames` and `splits` in a run directory (path). Empty without splits.
 
-    Frames whose split breaks nothing are not read.
+    Frames whose split breaks nothing are not read; splits whose frame is gone (an interrupted run) are left out.
     """
     directory = Path(directory)
     found = []
     for path in sorted((directory / "splits").glob("*.h5")):
+        if not (directory / "frames" / path.name).exists():
+            continue
         with opened(path) as file:
             split = read_split(file) if len(file["broken/parent"]) else None
         if split is not None:

@@ -1,86 +1,119 @@
 """One self-contained report.html: of one run, or of several side by side. Figures also go to figures/*.png."""
+import json
 from pathlib import Path
 
 import jinja2
-import numpy as np
 
-from ..figures import assemblies, curves
+from .data_links import link, table
+from .tables import NOT_MET, VERDICTS, checks, condition_table, headline, summary_table, warnings
+from ..figures.animation import animation
+from ..figures.catalogue import CATALOGUE, SECTIONS
+from ..figures.selection import KINDS, select
 from ..run.run_directory import make_folder, write_text, write_whole
-from ..style import data_uri, png_bytes, svg_text
-from .tables import checks, headline, summary_table, warnings
+from ..style import GENERATION_COLORS, png_bytes, sequence, svg_document, svg_text
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
-PICTURE_DPI = 230
-CURVE_DPI = 160
-
-RESPONSE = (
-    (curves.deviator, "Deviator stress", "Axial less lateral mean stress (Eq. 13)."),
-    (curves.volumetric_strain, "Volumetric strain", "Of the boundary's deformation; compression positive."),
-    (curves.friction_angle, "Mobilized friction", "Running mean over 0.2 % strain."),
-    (curves.void_ratio, "Void ratio", "e1: ring polygon over the solids inside it; e2: overlaps subtracted; e4: ring "
-     "polygon over the particles that are not on the boundary; a comparison shows the definition of its scenes."),
-    (curves.particles, "Particles", "Each breakage adds one particle."),
-    (curves.contacts, "Contacts", "Contacts in force."),
-    (curves.anisotropies, "Anisotropies", "Second-order Fourier fits (Eqs. 7 to 9)."),
-    (curves.orientations, "Contact orientations", "Share of the contacts in each direction of 15°, relative to an "
-     "isotropic assembly; thin lines: the fit of Eq. 7."),
-)
-CHECKS = (
-    (curves.servo_error, "Servo", "Lateral stress less the confining pressure, relative to it."),
-    (curves.unrest, "Quasi-static?", "Unbalanced force: mean resultant on a free particle over the mean normal force."),
-    (curves.energy, "Energy ledger", "Boundary work and where it went; the residual is a check."),
-    (curves.phases, "Time", "Wall time per phase; handover is what the exchange itself costs."),
-)
+PNG_DPI = 130
+DISPLACEMENT_SHADES = 10  # of the animation
+FILM = ("film", "The test in motion")
+LAST_SECTIONS = (("summary", "All numbers"), ("warnings", "Warnings"), ("configuration", "Configuration"))
 
 
-class Gallery:
-    """Draws each figure once: as PNG into figures/, and for the page as SVG (curves) or data URI (pictures)."""
-
-    def __init__(self, folder, prefix):
-        self._folder = folder
-        self._prefix = prefix
-        make_folder(folder)
-
-    def _save(self, name, png):
-        write_whole(self._folder / f"{self._prefix}{name}.png", png)
-
-    def curve(self, function, runs, title, caption):
-        figure = function(runs)
-        if figure is None:
-            return None
-        self._save(function.__name__, png_bytes(figure, CURVE_DPI))
-        return {"title": title, "caption": caption, "svg": svg_text(figure, function.__name__)}
-
-    def curves(self, table, runs):
-        return [one for one in (self.curve(function, runs, title, caption) for function, title, caption in table)
-                if one]
-
-    def picture(self, figure, name, title):
-        png = png_bytes(figure, PICTURE_DPI)
-        self._save(name, png)
-        return {"title": title, "image": data_uri(png)}
-
-
-def write_report(runs, target):
-    """Writes the page of `runs` (Results) to `target`."""
+def write_report(runs, target, figures=None):
+    """Writes the page of `runs` (Results) to `target`, its figures as PNG beside it; with a folder `figures`, every one
+    there as SVG, PNG and CSV too."""
     target = Path(target)
     several = len(runs) > 1
-    gallery = Gallery(target.parent / "figures", f"{target.stem}_" if several else "")
+    selection = select(runs)
+    png_folder, prefix = target.parent / "figures", f"{target.stem}_" if several else ""
+    sections = figure_sections(selection, Files(png_folder, prefix, (".png",)), Files(figures) if figures else None)
+    verdicts = checks(runs)
+    shown_film = film(runs[0]) if not several else None
     page = {
-        "title": " / ".join(run.name for run in runs) if several else runs[0].name,
-        "several": several,
+        "title": " / ".join(run.name for run in runs) if len(runs) <= 4 else f"{len(runs)} runs",
+        "subtitle": subtitle(selection),
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "tiles": headline(runs[0]) if not several else [],
-        "response": gallery.curves(RESPONSE, runs),
-        "pictures": comparison_pictures(gallery, runs) if several else run_pictures(gallery, runs[0]),
-        "checks": gallery.curves(CHECKS, runs),
-        "verdicts": checks(runs),
-        "runs": runs,
-        "summary": summary_table(runs),
+        "key_numbers": table("key_numbers", *condition_table(selection)) if several else None,
+        "film": shown_film,
+        "sections": sections,
+        "contents": contents(sections, ([FILM] if shown_film else []), LAST_SECTIONS),
+        "checks": table("checks", ["check", "run", "found", "wanted", "verdict"], verdicts, marks=VERDICTS),
+        "unmet": sorted({label for label, *_, verdict in verdicts if verdict == NOT_MET}),
+        "definition": runs[0].summary["sin_phi_definition"],
+        "summary": table("summary", *summary_table(runs)),
         "warnings": warnings(runs),
         "cases": [(run.name, run.directory.case_file.read_text(encoding="utf-8")) for run in runs],
     }
     write_text(target, render("report.html.j2", page))
+
+
+def contents(sections, before=(), after=()):
+    """(anchor, title, figures) of the list of contents."""
+    return [(name, title, []) for name, title in before] + [
+        (section["name"], section["title"], section["figures"]) for section in sections] + [
+        (name, title, []) for name, title in after]
+
+
+class Files:
+    """Where the figures go as files of their own."""
+
+    def __init__(self, folder, prefix="", kinds=(".svg", ".png", ".csv")):
+        self._folder, self._prefix, self._kinds = Path(folder), prefix, kinds
+        make_folder(self._folder)
+
+    def write(self, name, drawn):
+        makers = {".svg": lambda: svg_document(drawn.figure, name).encode(),
+                  ".png": lambda: png_bytes(drawn.figure, PNG_DPI), ".csv": lambda: drawn.data.text().encode()}
+        for kind in self._kinds:
+            write_whole(self._folder / f"{self._prefix}{name}{kind}", makers[kind]())
+
+
+def figure_sections(selection, *files):
+    """The catalogue's figures that the selection allows, by section, for the page; each is written to `files` too."""
+    found = {name: [] for name, _ in SECTIONS}
+    for entry in CATALOGUE:
+        drawn = entry.drawn(selection)
+        if drawn is None:
+            continue
+        found[entry.section].append(on_page(entry, drawn))
+        for one in files:
+            if one:
+                one.write(entry.name, drawn)
+    return [{"name": name, "title": title, "figures": found[name]} for name, title in SECTIONS if found[name]]
+
+
+def on_page(entry, drawn):
+    item = {"name": entry.name, "paper": entry.paper, "title": entry.title, "caption": entry.caption,
+            "wide": drawn.wide, "width": round(96 * drawn.figure.get_size_inches()[0]),
+            "svg": svg_text(drawn.figure, entry.name, f"{entry.title}. {entry.caption}"),
+            "link": link(entry.name, drawn.data.text())}
+    drawn.figure.set_layout_engine("none")  # what follows keeps the places that the layout found
+    return item
+
+
+def subtitle(selection):
+    if selection.is_single:
+        run = selection.runs[0]
+        pressure = run.summary["confining_pressure"]
+        words = [f"Biaxial test of {'a breakable' if run.breakable else 'an unbreakable'} assembly",
+                 *([f"{1e-6 * pressure:g} MPa confining pressure"] if pressure else []),
+                 f"{run.summary['particles_initial']} particles", f"seed {run.case.get('seed', '?')}"]
+        return ", ".join(words)
+    words = [f"{len(selection.runs)} biaxial tests", " and ".join(KINDS[kind] for kind in selection.kinds)]
+    if selection.pressures:
+        words.append(", ".join(f"{1e-6 * pressure:g}" for pressure in selection.pressures) + " MPa confining pressure")
+    if selection.has_seeds:
+        words.append("curves are means over the seeds, bands one standard deviation")
+    return "; ".join(words)
+
+
+def film(run):
+    found = animation(run)
+    if found is None:
+        return None
+    return {"data": json.dumps(found, separators=(",", ":")), "furthest": f"{found['furthest']:.2f} m",
+            "generations": GENERATION_COLORS, "shades": sequence(DISPLACEMENT_SHADES)[::-1]}
 
 
 def render(template, page):
@@ -88,43 +121,7 @@ def render(template, page):
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=lambda name: name.endswith(".html.j2"), trim_blocks=True,
         lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.globals["table_of"] = table
+    environment.globals["asset"] = lambda name: (TEMPLATES / name).read_text(encoding="utf-8")
     style = (TEMPLATES / "style.css").read_text(encoding="utf-8")
     return environment.get_template(template).render(page, style=style)
-
-
-def strongest(pictures):
-    """Normal force that gets the strongest shade [N]: a quantile, so that one contact does not pale the rest."""
-    forces = np.concatenate([picture.normal_force for picture in pictures])
-    return float(np.quantile(forces, 0.995)) if len(forces) and forces.max() > 0 else 1.0
-
-
-def run_pictures(gallery, run):
-    shown = [(name, assemblies.Picture(run.directory.frame_file(k))) for name, k in run.stages]
-    limits, scale = assemblies.extent([p for _, p in shown]), strongest([p for _, p in shown])
-    chains = [gallery.picture(assemblies.force_chains(picture, limits, scale), f"force_chains_{name}",
-                              f"{name.capitalize()}, {picture.strain:.1%} axial strain") for name, picture in shown]
-    largest = max(picture.displacement.max() for _, picture in shown)
-    moved = [gallery.picture(assemblies.displacements(picture, limits, largest), f"displacements_{name}",
-                             f"{name.capitalize()}, {picture.strain:.1%} axial strain")
-             for name, picture in shown if name != "start"]
-    return [{"title": "Force chains", "items": chains,
-             "caption": "A line joins the centroids of two particles over their contact point; width and colour grow "
-                        "with the normal force, on one scale for all pictures. Boundary particles are darker."},
-            {"title": "Displacements and fragments", "items": moved,
-             "caption": "Length of the displacement since the start of shear; fragments of broken particles are "
-                        "black."}]
-
-
-def comparison_pictures(gallery, runs):
-    groups = []
-    for stage in ("peak", "end"):
-        shown = [(run, assemblies.Picture(run.directory.frame_file(run.stage_frame(stage)))) for run in runs]
-        limits, scale = assemblies.extent([p for _, p in shown]), strongest([p for _, p in shown])
-        groups.append({"title": f"Force chains at the {stage}", "caption": "One scale for all runs.", "items": [
-            gallery.picture(assemblies.force_chains(picture, limits, scale), f"force_chains_{stage}_{i}",
-                            f"{run.name}, {picture.strain:.1%}") for i, (run, picture) in enumerate(shown)]})
-    largest = max(picture.displacement.max() for _, picture in shown)
-    groups.append({"title": "Displacements and fragments at the end", "caption": "One scale for all runs.", "items": [
-        gallery.picture(assemblies.displacements(picture, limits, largest), f"displacements_end_{i}",
-                        f"{run.name}, {picture.strain:.1%}") for i, (run, picture) in enumerate(shown)]})
-    return groups

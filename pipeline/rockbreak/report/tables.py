@@ -1,5 +1,6 @@
 """The report's numbers as text: headline, summary table with the paper's values, checks, warnings."""
 from collections import Counter
+from statistics import mean, stdev
 
 from ..paper import numbers as paper
 from ..run.ledger import kind_of
@@ -9,6 +10,9 @@ AREA_TOLERANCE = 1e-12      # relative change of the total solid area
 REST_TOLERANCE = 1e-3       # unbalanced force before shear
 INERTIA_TOLERANCE = 1e-3    # inertial number
 ENERGY_TOLERANCE = 0.001    # residual over boundary work
+
+PASSED, NOT_MET, UNKNOWN = "✓ passed", "✗ not met", "not known"
+VERDICTS = {PASSED: "good", NOT_MET: "bad", UNKNOWN: "unknown"}  # with their style on the page
 
 
 def number(value, form="{:.3f}"):
@@ -73,7 +77,7 @@ def summary_rows(run):
 
 
 def summary_table(runs):
-    """Header cells, then (label, values, the paper's value or None) for each row that some run has."""
+    """Head and rows of text: a row for each number that some run has, the paper's value (if it has one) at the end."""
     tables = [summary_rows(run) for run in runs]
     beside = [published(run) for run in runs]
     labels = list(dict.fromkeys(label for table in tables for label in table))
@@ -81,12 +85,38 @@ def summary_table(runs):
     rows = []
     for label in labels:
         reference = " / ".join(str(values.get(label, "")) if values else "" for values in beside).strip(" /")
-        rows.append((label, [table.get(label, "–") for table in tables], reference if with_paper else None))
-    return {"names": [run.name for run in runs], "with_paper": with_paper, "rows": rows}
+        rows.append([label, *(table.get(label, "–") for table in tables), *([reference] if with_paper else [])])
+    return ["number", *(run.name for run in runs), *(["Raisianzadeh et al. (2019)"] if with_paper else [])], rows
+
+
+CONDITION_COLUMNS = (  # heading, number of the summary, format
+    ("particles, end", "particles_final", "{:.0f}"), ("broken", "broken_total", "{:.0f}"),
+    ("contacts, peak", "contacts_peak", "{:.0f}"), ("e, start", "initial_void_ratio", "{:.3f}"),
+    ("e, end", "final_void_ratio", "{:.3f}"), ("peak sin φ", "peak_sin_phi", "{:.3f}"),
+    ("at strain", "peak_strain", "{:.1%}"), ("sin φ of Eq. 10", "sin_phi_micro_peak", "{:.3f}"),
+    ("residual sin φ", "residual_sin_phi", "{:.3f}"),
+)
+
+
+def condition_table(selection):
+    """Head and rows of text: mean ± standard deviation over the seeds of each condition."""
+    rows = []
+    for condition in selection.conditions:
+        found = [[run.summary[key] for run in condition.runs if run.summary[key] is not None]
+                 for _, key, _ in CONDITION_COLUMNS]
+        rows.append([condition.label, str(len(condition.runs)), *(
+            mean_text(values, form) for values, (_, _, form) in zip(found, CONDITION_COLUMNS))])
+    return ["condition", "runs", *(heading for heading, _, _ in CONDITION_COLUMNS)], rows
+
+
+def mean_text(values, form):
+    if not values:
+        return "–"
+    return form.format(mean(values)) + (f" ± {form.format(stdev(values))}" if len(values) > 1 else "")
 
 
 def checks(runs):
-    """(run, check, found, wanted, passed or None if it cannot be told)."""
+    """(check, run, found, wanted, one of VERDICTS)."""
     found = []
     for run in runs:
         s, energy = run.summary, run.summary["energy"]
@@ -100,8 +130,8 @@ def checks(runs):
              ENERGY_TOLERANCE, "{:.2%}"),
         )
         for label, value, limit, form in values:
-            found.append((run.name, label, number(value, form), "≤ " + form.format(limit),
-                          None if value is None else value <= limit))
+            found.append((label, run.name, number(value, form), "≤ " + form.format(limit),
+                          UNKNOWN if value is None else PASSED if value <= limit else NOT_MET))
     return found
 
 
