@@ -1,4 +1,5 @@
-"""One table of many runs beside the paper: row, paper, ours (mean and standard deviation over seeds), verdict.
+"""One table of many runs beside the paper: every number of its tables and every sentence that states a trend, ours
+(mean and scatter over seeds), verdict and reason.
 
 write(directories, out) makes out/paper_table.md, .csv and .html.
 """
@@ -13,8 +14,11 @@ from . import numbers as paper
 from ..measures.classes import HELD
 from .class_limits import limits_table
 from .rows import LABELS, paper_rows
-from .trends import ASSEMBLY, trends
-from .verdicts import NOT_REPRODUCED, REPRODUCED, TOLERANCES_IN_WORDS, UNDECIDABLE, verdict
+from .causes import cause_of
+from .evidence import ASSEMBLY, Samples, finding
+from .observations import observe
+from .sentences_pressure import SENTENCES
+from .verdicts import NOT_REPRODUCED, REPRODUCED, TOLERANCES_IN_WORDS, UNDECIDABLE, WITHIN_SCATTER, verdict
 from ..report.page import render
 from ..run.results import Results
 from ..run.run_directory import RunDirectory, write_text
@@ -41,6 +45,17 @@ class Group:
     @property
     def seeds(self):
         return [run.case.get("seed") for run in self.runs]
+
+
+@dataclass(frozen=True)
+class Found:
+    """A sentence of the paper beside our runs."""
+    where: str
+    says: str
+    paper: str
+    ours: str
+    verdict: str
+    reason: str
 
 
 def depends_on_limits(quantity):
@@ -82,20 +97,22 @@ def write(directories, out):
     adrift = [(run.name, run.summary["lateral_stress_error_rms"]) for run in runs if is_adrift(run)]
     runs = [run for run in runs if not is_adrift(run)]
     groups = grouped(runs)
+    sentences = found_sentences(samples_of(groups))
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     page = {
         "groups": groups, "left_out": left_out, "adrift": adrift, "limits": limits_table(runs),
-        "trends": trends(means_of(groups)),
+        "sentences": sentences, "tally_of_sentences": [(kind, sum(one.verdict == kind for one in sentences)) for kind in (
+            REPRODUCED, WITHIN_SCATTER, NOT_REPRODUCED, UNDECIDABLE)],
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "repeated": [group.title for group in groups if len(set(group.seeds)) < len(group.seeds)],
         "tolerances": TOLERANCES_IN_WORDS, "tally": tally(groups),
-        "verdict_classes": {REPRODUCED: "good", NOT_REPRODUCED: "bad", UNDECIDABLE: "unknown"},
+        "verdict_classes": {REPRODUCED: "good", WITHIN_SCATTER: "unknown", NOT_REPRODUCED: "bad", UNDECIDABLE: "unknown"},
         "value": value_text, "ours": ours_text, "difference": difference_text,
         "megapascal": lambda pair: " / ".join(f"{1e-6 * limit:.1f}" for limit in pair),
     }
     target = out / "paper_table.html"
-    write_text(out / "paper_table.csv", csv_text(groups))
+    write_text(out / "paper_table.csv", csv_text(groups, sentences))
     write_text(out / "paper_table.md", render("paper_table.md.j2", page))
     write_text(target, render("paper_table.html.j2", page))
     return target
@@ -144,16 +161,28 @@ def rows_of(group):
     starts["paper"] = paper.INITIAL_VOID_RATIO
     for row in rows.values():
         row.verdict, row.reason = verdict(row.quantity, row.column, row.paper, row.mean, row.deviation, starts)
+        if row.verdict == NOT_REPRODUCED and (cause := cause_of(row.quantity, row.column)):
+            row.reason += f": {cause}"
     return list(rows.values())
 
 
-def means_of(groups):
-    """For the trends; of several variants of one pressure and assembly, the first."""
-    means = {}
+def samples_of(groups):
+    """For the sentences; of several variants of one pressure and assembly, the first."""
+    values = {}
     for group in groups:
-        means.setdefault((group.pressure, group.breakable),
-                         {(row.table, row.quantity, row.column): row.mean for row in group.rows})
-    return means
+        values.setdefault((group.pressure, group.breakable), {run.case.get("seed"): observe(run) for run in group.runs})
+    return Samples(values)
+
+
+def found_sentences(samples):
+    """Every sentence of the paper with what the samples say of it."""
+    found = []
+    for sentence in SENTENCES:
+        ours, kind, reason = finding(sentence.parts, samples) if sentence.parts else ("–", UNDECIDABLE, "")
+        if sentence.cause and kind != REPRODUCED and (ours != "–" or not sentence.parts):
+            reason = f"{reason}: {sentence.cause}" if reason else sentence.cause
+        found.append(Found(sentence.where, sentence.says, sentence.paper, ours, kind, reason))
+    return found
 
 
 def tally(groups):
@@ -188,15 +217,18 @@ def difference_text(row):
     return f"{row.difference:+.0f}" if is_count(row) else f"{row.difference:+.3f}"
 
 
-def csv_text(groups):
+def csv_text(groups, sentences):
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")
     table.writerow(["confining_pressure", "assembly", "variant", "table", "row", "column", "paper", "mean",
-                    "standard_deviation", "n", "difference", "verdict", "reason"])
+                    "standard_deviation", "n", "difference", "verdict", "reason", "ours"])
     for group in groups:
         for row in group.rows:
             table.writerow([f"{group.pressure:g}", ASSEMBLY[group.breakable], group.variant, row.table, row.quantity,
                             row.column, *("" if value is None else f"{value:.6g}" for value in (
                                 row.paper, row.mean, row.deviation)), len(row.values),
-                            "" if row.difference is None else f"{row.difference:.6g}", row.verdict, row.reason])
+                            "" if row.difference is None else f"{row.difference:.6g}", row.verdict, row.reason,
+                            ours_text(row)])
+    for one in sentences:
+        table.writerow(["", "", "", one.where, one.says, "", one.paper, "", "", "", "", one.verdict, one.reason, one.ours])
     return stream.getvalue()

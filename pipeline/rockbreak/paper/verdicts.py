@@ -6,18 +6,19 @@ is compared with the scatter of single samples, so the deviation is not divided 
 from .numbers import CONTACTS_2MPA, PARTICLES
 
 REPRODUCED, NOT_REPRODUCED, UNDECIDABLE = "reproduced", "not reproduced", "not decidable"
+WITHIN_SCATTER = "within the scatter"  # of a trend alone (evidence.py)
 
 SHARE_OF_TOTALS = 0.05    # of contacts and particles
 SHARE_OF_CLASSES = 0.10   # of the counts of classes and of large displacements, and of the strain at the peak
 SMALLEST_SHARE = 0.005    # of all contacts or particles: what a small count may miss
 VOID_RATIO = 0.005
-MISFIT = 0.05             # of sin(phi): our reading of "good agreement"
+MISFIT = 0.02             # of sin(phi): our reading of "good agreement"
 SAME_START = 0.005        # void ratios are compared where our sample starts at the paper's
 
 TOLERANCES_IN_WORDS = (
     f"{SHARE_OF_TOTALS:.0%} for totals of contacts and particles, {SHARE_OF_CLASSES:.0%} for classes, large "
     f"displacements and the strain at the peak, but at least {SMALLEST_SHARE:.1%} of all contacts or particles for a "
-    f"count; {VOID_RATIO:g} for void ratios; {MISFIT:g} for Eq. 10 / Eq. 12 − 1, our reading of “good agreement”")
+    f"count; {VOID_RATIO:g} for void ratios; {MISFIT:g} for Eq. 10 − Eq. 12, our reading of “good agreement”")
 
 
 def stated_tolerance(quantity, published):
