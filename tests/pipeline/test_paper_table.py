@@ -1,4 +1,4 @@
-"""Many runs beside the paper: scatter over seeds, verdicts, trends, limits of the classes, and the files written."""
+"""Many runs beside the paper: scatter over seeds, verdicts, sentences, limits of the classes, and the files written."""
 import csv
 
 import numpy as np
