@@ -61,7 +61,29 @@ def svg_document(figure, salt):
 
 
 def tightened(path):
-    return re.sub(r"\s*([MLQCz])\s*", r"\1", re.sub(r"(\.\d\d)\d+", r"\1", path))
+    """The d attribute of a path with two decimals; of straight lines relative, which is half as long."""
+    commands = re.findall(r"([MLQCz])([^MLQCz]*)", path)
+    if any(kind in "QC" for kind, _ in commands):
+        return re.sub(r"\s*([MLQCz])\s*", r"\1", re.sub(r"(\.\d\d)\d+", r"\1", path))
+    parts, x, y, x0, y0 = [], 0, 0, 0, 0
+    for kind, numbers in commands:
+        if kind == "z":
+            parts.append("z")
+            x, y = x0, y0
+            continue
+        new_x, new_y = (round(100 * float(number)) for number in numbers.replace('"', "").split())
+        parts.append(f"M{hundredths(new_x)} {hundredths(new_y)}" if kind == "M" else
+                     f"l{hundredths(new_x - x)} {hundredths(new_y - y)}")
+        x, y = new_x, new_y
+        if kind == "M":
+            x0, y0 = x, y
+    return f' d="{"".join(parts)}"'
+
+
+def hundredths(count):
+    """Shortest text of count / 100."""
+    text = f"{count / 100:.2f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def svg_text(figure, salt, label=None):

@@ -3,11 +3,14 @@ downloads that agree, widths of a laptop and of a telephone, print."""
 import base64
 import csv
 import io
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import browser
 import synthetic
+from rockbreak.campaign.report import write_campaign_report
 from rockbreak.figures.catalogue import CATALOGUE
 from rockbreak.report.page import write_report
 from rockbreak.run.results import Results
@@ -15,7 +18,7 @@ from rockbreak.run.run_directory import RunDirectory
 
 pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="chromium is not installed (pipeline/setup --with-tests)")
 
-TABLES = """Array.from(document.querySelectorAll("table[id]")).map(table => ({
+TABLES = """Array.from(document.querySelectorAll("table")).map(table => ({
   name: table.id, href: table.parentElement.querySelector("a[download]").href,
   cells: Array.from(table.rows).map(row => Array.from(row.cells).map(cell => cell.textContent.trim()))}))"""
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
@@ -29,7 +32,21 @@ def pages(tmp_path_factory):
                                               ("breakable 4", True, 4e6), ("solid 4", False, 4e6))]
     write_report(runs[:1], folder / "run.html")
     write_report(runs, folder / "comparison.html")
+    (folder / "paper_table.html").write_text("<main><header>x</header><h2>At 2 MPa</h2><div class=\"card\"><table><tr>"
+                                             "<th>row</th><th>ours</th></tr><tr><td>a, \"b\"</td><td>1</td></tr></table>"
+                                             "</div></main>")
+    plan = SimpleNamespace(out=folder, runs=[planned(run) for run in runs])
+    write_campaign_report(SimpleNamespace(file=Path("sweep.yaml")), plan, {"sample": 3.0})
     return folder
+
+
+def planned(run):
+    """A finished run as a campaign's plan knows it."""
+    labels = (("variant", "breakable" if run.breakable else "solid"),
+              ("preparation.confining_pressure", str(run.summary["confining_pressure"])))
+    return SimpleNamespace(name=run.name, out=run.directory.path, summary=run.summary, failure=None, code=0,
+                           command=["pipeline/run", run.name],
+                           variations=[SimpleNamespace(title="", labels=labels, keys=labels[1:])])
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +55,7 @@ def chromium():
         yield one
 
 
-@pytest.fixture(params=["run.html", "comparison.html"])
+@pytest.fixture(params=["run.html", "comparison.html", "campaign.html"])
 def page(request, pages, chromium):
     chromium.resize(1280)
     chromium.open(pages / request.param)
@@ -52,7 +69,7 @@ def test_a_page_loads_without_network_and_without_complaint(page):
 
 def test_every_figure_of_the_catalogue_is_there_with_alt_text_caption_and_data(pages, chromium):
     shown = {}
-    for name in ("run.html", "comparison.html"):
+    for name in ("run.html", "comparison.html", "campaign.html"):
         chromium.open(pages / name)
         found = chromium.value("""Array.from(document.querySelectorAll("figure[id]")).map(figure => [figure.id,
             figure.querySelector("svg") ? figure.querySelector("svg").getAttribute("aria-label").length : -1,
@@ -67,13 +84,14 @@ def test_every_figure_of_the_catalogue_is_there_with_alt_text_caption_and_data(p
     for_one = {entry.name for entry in CATALOGUE if entry.needs == "one run"} - several
     assert set(shown["run.html"]) == for_one
     assert set(shown["comparison.html"]) == {entry.name for entry in CATALOGUE} - {"energy"}
+    assert set(shown["campaign.html"]) == set(shown["comparison.html"]) | {"trend-preparation.confining_pressure"}
     papers = {entry.paper for entry in CATALOGUE} - {None}
     assert papers == {str(number) for number in (*range(3, 8), *range(9, 23))}, "Figs. 3 to 7 and 9 to 22"
 
 
 def test_every_table_downloads_as_the_cells_that_it_shows(page):
     tables = page.value(TABLES)
-    assert {"table-summary", "table-checks"} <= {table["name"] for table in tables}
+    assert len(tables) >= 3 and len({table["href"] for table in tables}) == len(tables)
     for table in tables:
         text = page.value(f"fetch({table['href']!r}).then(answer => answer.text())")
         rows = [[" ".join(cell.split()) for cell in row] for row in csv.reader(io.StringIO(text))]

@@ -17,7 +17,8 @@ from ..measures.stresses import class_of, frame_stresses
 from ..style import CLASS_COLORS, GREY, INK, SOFT
 
 SHADES = 20  # at most, of a displacement: particles of one shade are one path, so that ten thousand are a small file
-WIDTH = 11.0              # [in]
+MOST_ROWS = 4  # of a figure
+WIDTH = 11.0   # [in]
 CLASS_WIDTHS = (0.35, 1.0, 2.0)  # lines of weak, moderate and strong forces, against the usual width
 
 
@@ -32,7 +33,7 @@ class Panel:
 
 def against_strain(selection):
     """Panels at the shown strains, a row for each condition at the reference pressure."""
-    conditions = selection.reference.conditions
+    conditions = selection.reference.conditions[:MOST_ROWS]
     panels = []
     for condition in conditions:
         for strain in frames.shown_strains([one.first for one in conditions]):

@@ -72,7 +72,8 @@ def breakage_against_strain(selection):
     data = Columns()
     for (name, label, scale), axes in zip(INDICES, shown):
         for condition in selection.breakable:
-            band = band_of(condition, lambda run: (breakage_table(run)["axial_strain"], breakage_table(run)[name]))
+            band = band_of(condition, lambda run: (breakage_table(run)["axial_strain"], breakage_table(run)[name]),
+                           INDEXED_FRAMES)
             if band is None:
                 return None
             add_band(axes, band, condition.line, condition.label, scale)

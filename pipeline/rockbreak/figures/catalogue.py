@@ -50,6 +50,8 @@ FITTED = "Limits of the classes: those that fit the paper's counts best, which s
 STRESS = ("Mean stress of each particle from its contact forces (its virial, equal to the average over the finite "
           f"elements where the forces balance), compression positive. {CLASSES_NOTE} {FITTED}")
 
+BESIDE = "Marks, for the paper's assembly at 2 MPa: Raisianzadeh et al. (2019), Table 2."
+
 CATALOGUE = (
     Entry("deviator", None, "response", "Deviator stress",
           "Axial less lateral mean stress of the assembly (Eq. 13).", curves.deviator),
@@ -62,8 +64,9 @@ CATALOGUE = (
           "e1: ring polygon over the solids inside it; e2: the same with overlaps subtracted; e4: ring polygon over the "
           "particles that are not on the boundary. A comparison shows the definition of its scenes.", curves.void_ratio),
     Entry("particles", None, "response", "Number of particles",
-          "Each breakage makes two particles of one.", curves.particles),
-    Entry("contacts", None, "response", "Number of contacts", "Contacts in force.", curves.contacts),
+          f"Each breakage makes two particles of one. {BESIDE}", curves.particles),
+    Entry("contacts", None, "response", "Number of contacts", f"Contacts in force. {BESIDE}",
+          curves.contacts),
 
     Entry("displacements", "3", "micro", "Displacements and fragments",
           "Length of each particle's displacement since the start of shear, on one scale; particles that have come out "

@@ -4,6 +4,7 @@ from functools import lru_cache
 import numpy as np
 from matplotlib.figure import Figure
 
+from .assemblies import legend
 from .drawn import Columns, Drawn
 from ..measures.breakage import direction_rose, read_breakages
 from ..measures.frame import MODES
@@ -46,7 +47,7 @@ def crack_rose(selection):
             data.add(condition=condition.label, mode=name, direction_degrees=np.degrees(centres[:BINS]),
                      share_of_breakages=share[:BINS])
         top = max(top, 100 * base.max())
-        axes.set_title(f"{condition.label}, " * (len(shown) > 1) + f"{len(direction)} breakages", pad=8)
+        axes.set_title(f"{condition.label}\n" * (len(shown) > 1) + f"{len(direction)} breakages", pad=8)
     for axes in grid[len(shown):]:
         axes.set_visible(False)
     ticks = [tick for tick in (2, 5, 10, 15, 20, 30, 50) if tick <= top][-2:]
@@ -58,5 +59,5 @@ def crack_rose(selection):
                         color=GREY)
         axes.tick_params(axis="x", pad=-2)
         axes.spines["polar"].set_visible(False)
-    grid[0].legend(loc="upper left", bbox_to_anchor=(1.02, 1.0) if len(shown) == 1 else (-0.25, 1.2), fontsize=8)
+    legend(figure, grid[0].get_legend_handles_labels()[0])
     return Drawn(figure, data, wide=len(shown) > 1)

@@ -9,14 +9,15 @@ from ..run.history import running_mean, shear_rows, sin_phi
 from ..run.summary import SMOOTHING_WINDOW
 from ..style import CYCLE, GREY, INK, LIGHT, LINES, SKY, curve_figure
 
-POINTS = 500  # of a line
+POINTS = 400  # of a line
+LOG_RATIO = 4  # of the largest to the smallest value of an axis, from which it is drawn logarithmically
 
 
-def common_strains(runs, points=POINTS):
+def common_strains(runs, points):
     return np.linspace(0.0, min(run.frames[-1]["axial_strain"] for run in runs), points)
 
 
-def band_of(condition, values_of):
+def band_of(condition, values_of, points=POINTS):
     """Axial strain, mean, standard deviation (None of one run); None if a run lacks the data.
 
     `values_of(run)` gives strains and values, or None.
@@ -24,7 +25,7 @@ def band_of(condition, values_of):
     found = [values_of(run) for run in condition.runs]
     if any(one is None or len(one[0]) < 2 for one in found):
         return None
-    strain = common_strains(condition.runs)
+    strain = common_strains(condition.runs, points)
     values = np.array([np.interp(strain, *one) for one in found])
     return strain, values.mean(axis=0), values.std(axis=0, ddof=1) if len(found) > 1 else None
 
@@ -43,14 +44,30 @@ def add_rows(data, condition, band, name, **more):
              **({f"{name}_deviation": deviation} if deviation is not None else {}))
 
 
+FEW = 4  # conditions whose legend finds a place between the curves
+
+
 def finish(axes, selection, legend=None, bottom=None):
     axes.margins(x=0.01)
     axes.set_xlim(left=0)
     if bottom is not None:
         axes.set_ylim(bottom=bottom)
     if legend or (legend is None and len(selection.conditions) > 1):
-        axes.legend(loc="best", fontsize=7.5 if len(selection.conditions) > 4 else 8.5,
-                    ncols=2 if len(selection.conditions) > 4 else 1, handlelength=2.4)
+        entries = len(axes.get_legend_handles_labels()[0])
+        if entries > FEW:
+            axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=7.5, ncols=min(4, -(-entries // 2)),
+                        columnspacing=1.2, handlelength=2.2)
+        else:
+            axes.legend(loc="best", handlelength=2.4)
+
+
+def scale_of_ticks(axes, ticks):
+    """A tick at each value of an axis that has a few; logarithmic where they span a wide range."""
+    if ticks and ticks[0] > 0 and ticks[-1] >= LOG_RATIO * ticks[0]:
+        axes.set_xscale("log")
+        axes.minorticks_off()
+    slanted = {"rotation": 30, "fontsize": 8} if len(ticks) > 5 or any(len(f"{tick:g}") > 4 for tick in ticks) else {}
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks], **slanted)
 
 
 def curve(selection, ylabel, name, values_of, scale=1.0, bottom=None, zero_line=False):
@@ -138,8 +155,7 @@ def contacts(selection):
         axes = drawn.figure.axes[0]
         shown = {one.breakable for one in selection.conditions if paper.applies_to(one.first.case)}
         for kind in sorted(shown):
-            paper_markers(axes, paper.CONTACTS_2MPA[kind], f"Raisianzadeh et al. (2019), {KINDS[kind]}",
-                          "D" if kind else "o")
+            paper_markers(axes, paper.CONTACTS_2MPA[kind], f"paper, {KINDS[kind]}", "D" if kind else "o")
         room_above(axes, 0.25 if shown or len(selection.conditions) > 1 else 0)
         finish(axes, selection, legend=len(selection.conditions) > 1 or bool(shown))
     return drawn
@@ -163,7 +179,7 @@ def particles(selection):
     if selection.is_single:
         breakages(axes, selection.runs[0])
     if any(paper.applies_to(one.first.case) for one in selection.breakable):
-        paper_markers(axes, paper.PARTICLES_2MPA_BREAKABLE, "Raisianzadeh et al. (2019)", "D")
+        paper_markers(axes, paper.PARTICLES_2MPA_BREAKABLE, "paper, breakable", "D")
     axes.ticklabel_format(style="plain", useOffset=False)
     finish(axes, selection, legend=True)
     return Drawn(figure, data)

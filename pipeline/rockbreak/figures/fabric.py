@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from . import frames
-from .assemblies import WIDTH
+from .assemblies import MOST_ROWS, WIDTH
 from .drawn import Columns, Drawn
 from .selection import KINDS
 from ..measures.fabric import polar_histogram
@@ -34,7 +34,7 @@ class Rose:
 def at_stages(selection):
     """A row for each condition at the reference pressure, at the start, the peak and the end of its runs."""
     return [Rose(condition.label, stage, condition, stage, condition.style["color"])
-            for condition in selection.reference.conditions for stage in ("start", "peak", "end")]
+            for condition in selection.reference.conditions[:MOST_ROWS] for stage in ("start", "peak", "end")]
 
 
 def at_peak(selection):
@@ -69,6 +69,7 @@ def polar_grid(roses, name, bars_of, fit_of, anisotropy, unit, scale=1.0):
     columns = list(dict.fromkeys(rose.column for rose in roses))
     side = min(WIDTH / len(columns), 3.0)
     figure = Figure(figsize=(side * len(columns), (side + 0.2) * len(rows)), layout="constrained")
+    figure.get_layout_engine().set(h_pad=0.09)
     grid = figure.subplots(len(rows), len(columns), squeeze=False, subplot_kw={"projection": "polar"})
     fine, data, top = np.linspace(0, 2 * np.pi, 361), Columns(), 0.0
     for panel in grid.ravel():

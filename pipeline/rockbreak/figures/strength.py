@@ -5,12 +5,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .assemblies import WIDTH
-from .curves import POINTS, add_band, add_rows, band_of, finish, smooth_friction
+from .curves import add_band, add_rows, band_of, finish, scale_of_ticks, smooth_friction
 from .drawn import Columns, Drawn
 from .selection import KIND_COLORS, KIND_LINES, KIND_MARKERS, KINDS
 from ..style import GREEN, INK, LINES, ORANGE, PURPLE, curve_figure
 
 FITTED_FRAMES = 60  # at most, of one curve
+MARKS = 25          # of Eq. 10 beside a line
 ANISOTROPIES = (("a", "$a$", "contact orientation"), ("a_n", "$a_n$", "normal forces"),
                 ("a_t", "$a_t$", "shear forces"), ("total", "$a + a_n + a_t$", "total"))
 
@@ -52,7 +53,7 @@ def anisotropies(selection):
     data = Columns()
     for index, ((name, symbol, title), axes) in enumerate(zip(ANISOTROPIES, shown)):
         for condition in part.conditions:
-            band = band_of(condition, of_fabric(name))
+            band = band_of(condition, of_fabric(name), FITTED_FRAMES)
             if band is None:
                 return None
             style = ({"color": (GREEN, PURPLE, ORANGE, INK)[index], "linestyle": LINES[index]} if selection.is_single
@@ -83,8 +84,8 @@ def stress_and_fabric(selection):
         shown[0].set_ylabel("$\\sin\\varphi$ [-]")
     data = Columns()
     for condition, axes in zip(conditions, shown):
-        bands = [band_of(condition, values) for values in
-                 (smooth_friction, *(of_fabric(name) for name, _, _, _ in MICRO))]
+        bands = [band_of(condition, smooth_friction),
+                 *(band_of(condition, of_fabric(name), FITTED_FRAMES) for name, _, _, _ in MICRO)]
         if any(band is None for band in bands):
             return None
         add_band(axes, bands[0], {**condition.line, "linestyle": "-"}, "stresses, Eq. 12")
@@ -112,11 +113,15 @@ def anisotropies_by_pressure(selection):
     figure = Figure(figsize=(WIDTH, 2.6 * len(kinds) + 0.2), layout="constrained")
     grid = figure.subplots(len(kinds), 4, squeeze=False, sharex=True, sharey="col")
     data = Columns()
+    for axes, (_, symbol, title) in zip(grid[0], ANISOTROPIES):
+        axes.set_title(f"{title} {symbol}")
+    for axes in grid[-1]:
+        axes.set_xlabel("axial strain [%]")
     for row, kind in zip(grid, kinds):
-        for axes, (name, symbol, title) in zip(row, ANISOTROPIES):
+        for axes, (name, _, _) in zip(row, ANISOTROPIES):
             for pressure in selection.pressures:
                 condition = selection.at(pressure, kind)
-                band = condition and band_of(condition, of_fabric(name))
+                band = condition and band_of(condition, of_fabric(name), FITTED_FRAMES)
                 if band:
                     style = {"color": condition.style["color"],
                              "linestyle": LINES[selection.pressures.index(pressure) % len(LINES)]}
@@ -125,10 +130,6 @@ def anisotropies_by_pressure(selection):
             axes.margins(x=0.01)
             axes.set_ylim(bottom=0)
             axes.set_xlim(left=0)
-            if row is grid[0]:
-                axes.set_title(f"{title} {symbol}")
-            if row is grid[-1]:
-                axes.set_xlabel("axial strain [%]")
         row[0].set_ylabel(KINDS[kind])
     grid[0][0].legend(loc="lower right", fontsize=7.5, ncols=2)
     return Drawn(figure, data, wide=True)
@@ -145,12 +146,11 @@ def stress_and_fabric_by_pressure(selection):
             if condition is None:
                 continue
             color = KIND_COLORS[kind]
-            stress, micro = band_of(condition, smooth_friction), band_of(condition, of_fabric("eq_10"))
+            stress, micro = band_of(condition, smooth_friction), band_of(condition, of_fabric("eq_10"), MARKS)
             if stress is None or micro is None:
                 return None
             add_band(axes, stress, {"color": color, "linestyle": KIND_LINES[kind]}, f"{KINDS[kind]}, stresses")
-            some = slice(None, None, POINTS // 25)
-            axes.plot(100 * micro[0][some], micro[1][some], KIND_MARKERS[kind], color=color, markersize=3.2,
+            axes.plot(100 * micro[0], micro[1], KIND_MARKERS[kind], color=color, markersize=3.2,
                       markerfacecolor="white", markeredgewidth=0.9, linestyle="none", label=f"{KINDS[kind]}, Eq. 10")
             add_rows(data, condition, stress, "sin_phi", source="stresses")
             add_rows(data, condition, micro, "sin_phi", source="eq_10")
@@ -179,7 +179,7 @@ def peak_friction(selection):
             x = np.array([1e-6 * one.pressure for one, _ in points])
             mean = np.array([values.mean() for _, values in points])
             spread = np.array([values.std(ddof=1) if len(values) > 1 else np.nan for _, values in points])
-            axes.errorbar(x, mean, spread if selection.has_seeds else None, color=KIND_COLORS[kind], linestyle=line,
+            axes.errorbar(x, mean, np.nan_to_num(spread) if selection.has_seeds else None, color=KIND_COLORS[kind], linestyle=line,
                           marker=KIND_MARKERS[kind], markersize=5.5, capsize=3, linewidth=1.3,
                           markerfacecolor="white" if hollow else KIND_COLORS[kind], label=f"{KINDS[kind]}, {label}")
             data.add(kind=KINDS[kind], source=label, pressure_Pa=1e6 * x, peak_friction_angle_degrees=mean,
@@ -190,9 +190,5 @@ def peak_friction(selection):
 
 
 def pressure_axis(axes, selection):
-    """Logarithmic, with a tick at each pressure, where pressures span a wide range."""
-    ticks = [1e-6 * pressure for pressure in selection.pressures]
-    if ticks[0] > 0 and ticks[-1] >= 4 * ticks[0]:
-        axes.set_xscale("log")
-        axes.minorticks_off()
-    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    """A tick at each pressure [MPa]."""
+    scale_of_ticks(axes, [1e-6 * pressure for pressure in selection.pressures])

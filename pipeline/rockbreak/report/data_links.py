@@ -5,7 +5,7 @@ import gzip
 import io
 from urllib.parse import quote
 
-LARGEST_TEXT = 1_500_000  # bytes of a URI; browsers refuse to save from longer ones than about 2 MB
+LARGEST_TEXT = 800_000  # bytes of a URI; browsers refuse to save from those longer than about 2 MB
 
 
 def csv_text(head, rows):

@@ -5,7 +5,7 @@ from pathlib import Path
 import jinja2
 
 from .data_links import link, table
-from .tables import NOT_MET, VERDICTS, checks, condition_table, headline, summary_table, warnings
+from .tables import NOT_MET, VERDICTS, checks, condition_table, headline, summary_table, warnings, worst_checks
 from ..figures.animation import animation
 from ..figures.catalogue import CATALOGUE, SECTIONS
 from ..figures.selection import KINDS, select
@@ -27,7 +27,7 @@ def write_report(runs, target, figures=None):
     selection = select(runs)
     png_folder, prefix = target.parent / "figures", f"{target.stem}_" if several else ""
     sections = figure_sections(selection, Files(png_folder, prefix, (".png",)), Files(figures) if figures else None)
-    verdicts = checks(runs)
+    verdicts = worst_checks(runs) if several else checks(runs)
     shown_film = film(runs[0]) if not several else None
     page = {
         "title": " / ".join(run.name for run in runs) if len(runs) <= 4 else f"{len(runs)} runs",
@@ -38,7 +38,7 @@ def write_report(runs, target, figures=None):
         "film": shown_film,
         "sections": sections,
         "contents": contents(sections, ([FILM] if shown_film else []), LAST_SECTIONS),
-        "checks": table("checks", ["check", "run", "found", "wanted", "verdict"], verdicts, marks=VERDICTS),
+        "checks": table("checks", ["check", "worst run" if several else "run", "found", "wanted", "verdict"], verdicts, marks=VERDICTS),
         "unmet": sorted({label for label, *_, verdict in verdicts if verdict == NOT_MET}),
         "definition": runs[0].summary["sin_phi_definition"],
         "summary": table("summary", *summary_table(runs)),
@@ -76,18 +76,18 @@ def figure_sections(selection, *files):
         drawn = entry.drawn(selection)
         if drawn is None:
             continue
-        found[entry.section].append(on_page(entry, drawn))
+        found[entry.section].append(drawing(entry.name, entry.title, entry.caption, drawn, entry.paper))
         for one in files:
             if one:
                 one.write(entry.name, drawn)
     return [{"name": name, "title": title, "figures": found[name]} for name, title in SECTIONS if found[name]]
 
 
-def on_page(entry, drawn):
-    item = {"name": entry.name, "paper": entry.paper, "title": entry.title, "caption": entry.caption,
-            "wide": drawn.wide, "width": round(96 * drawn.figure.get_size_inches()[0]),
-            "svg": svg_text(drawn.figure, entry.name, f"{entry.title}. {entry.caption}"),
-            "link": link(entry.name, drawn.data.text())}
+def drawing(name, title, caption, drawn, paper=None):
+    """What the page needs of a figure."""
+    item = {"name": name, "paper": paper, "title": title, "caption": caption, "wide": drawn.wide,
+            "width": round(96 * drawn.figure.get_size_inches()[0]),
+            "svg": svg_text(drawn.figure, name, f"{title}. {caption}"), "link": link(name, drawn.data.text())}
     drawn.figure.set_layout_engine("none")  # what follows keeps the places that the layout found
     return item
 

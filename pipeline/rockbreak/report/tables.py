@@ -91,7 +91,7 @@ def summary_table(runs):
 
 CONDITION_COLUMNS = (  # heading, number of the summary, format
     ("particles, end", "particles_final", "{:.0f}"), ("broken", "broken_total", "{:.0f}"),
-    ("contacts, peak", "contacts_peak", "{:.0f}"), ("e, start", "initial_void_ratio", "{:.3f}"),
+    ("e, start", "initial_void_ratio", "{:.3f}"),
     ("e, end", "final_void_ratio", "{:.3f}"), ("peak sin φ", "peak_sin_phi", "{:.3f}"),
     ("at strain", "peak_strain", "{:.1%}"), ("sin φ of Eq. 10", "sin_phi_micro_peak", "{:.3f}"),
     ("residual sin φ", "residual_sin_phi", "{:.3f}"),
@@ -117,6 +117,11 @@ def mean_text(values, form):
 
 def checks(runs):
     """(check, run, found, wanted, one of VERDICTS)."""
+    return [row for row, _ in checked(runs)]
+
+
+def checked(runs):
+    """Rows of `checks` with the number that was held against its limit."""
     found = []
     for run in runs:
         s, energy = run.summary, run.summary["energy"]
@@ -130,9 +135,18 @@ def checks(runs):
              ENERGY_TOLERANCE, "{:.2%}"),
         )
         for label, value, limit, form in values:
-            found.append((label, run.name, number(value, form), "≤ " + form.format(limit),
-                          UNKNOWN if value is None else PASSED if value <= limit else NOT_MET))
+            verdict = UNKNOWN if value is None else PASSED if value <= limit else NOT_MET
+            found.append(((label, run.name, number(value, form), "≤ " + form.format(limit), verdict), value))
     return found
+
+
+def worst_checks(runs):
+    """The same of several runs: of each check the run that is furthest from passing."""
+    found = {}
+    for row, value in checked(runs):
+        if row[0] not in found or (value or 0.0) > (found[row[0]][1] or 0.0):
+            found[row[0]] = (row, value)
+    return [row for row, _ in found.values()]
 
 
 def warnings(runs):
