@@ -50,7 +50,7 @@ FITTED = "Limits of the classes: those that fit the paper's counts best, which s
 STRESS = ("Mean stress of each particle from its contact forces (its virial, equal to the average over the finite "
           f"elements where the forces balance), compression positive. {CLASSES_NOTE} {FITTED}")
 
-BESIDE = "Marks, for the paper's assembly at 2 MPa: Raisianzadeh et al. (2019), Table 2."
+BESIDE = "Marks, for the paper's assembly at 2 MPa: its Table 2."
 
 CATALOGUE = (
     Entry("deviator", None, "response", "Deviator stress",
