@@ -98,7 +98,8 @@ int main(int argc, char** argv) {
   run_command->add_option("--until-frame", a.until_frame, "end at this frame")->check(CLI::NonNegativeNumber);
   run_command->add_flag("--resume", a.resume, "go on from the newest valid frame");
   run_command->add_flag("--serve", a.serve, "stay resident: print each frame on stdout, wait for its split on stdin");
-  run_command->add_option("--profile", a.profile, "write seconds and counts per phase to this JSON file");
+  run_command->add_option("--profile", a.profile,
+                          "write seconds and counts per phase to this JSON file; -: as an event to stderr");
 
   CLI::App* contacts_command = app.add_subcommand("contacts", "contacts and forces of a given configuration, no step");
   contacts_command->add_option("particles", a.particles, "PARTICLES.h5: the particles group of a frame")->required();

@@ -225,6 +225,7 @@ class Run {
 
   RunEnd shear() {
     const auto begin = Clock::now();
+    const double others_before = seconds_of_coupling();
     Shear shear_stage(scene_, *engine_, control_);
     for (;;) {
       while (!shear_stage.frame_due()) {
@@ -234,7 +235,7 @@ class Run {
       }
       if (engine_->clock().step % scene_.shear.history_interval != 0) record();
       if (const auto end = write_frame_and_exchange()) {
-        seconds_["shear"] += seconds_since(begin) - seconds_["write"] - seconds_["exchange"];
+        seconds_["shear"] += seconds_since(begin) - (seconds_of_coupling() - others_before);
         return *end;
       }
     }
@@ -243,6 +244,7 @@ class Run {
   // Writes frame `next_frame` and lets the breakage analysis answer; nothing is returned when the test goes on.
   std::optional<RunEnd> write_frame_and_exchange() {
     const Shear stage(scene_, *engine_, control_);
+    const auto write_begin = Clock::now();
     common::Frame frame = snapshot();
     if (frame.frame > 0) {
       require_rest(scene_, frame.history, *engine_, frame.step - checkpoint_step_, split_share_);
@@ -250,7 +252,6 @@ class Run {
     }
     frame.final = frame.frame >= stage.last_frame();
     ports_.progress(shear_event(scene_, *engine_, control_));
-    const auto write_begin = Clock::now();
     const common::WrittenFile written =
         common::write_frame(directory_.frame(frame.frame), frame, scene_.output.durability);
     seconds_["write"] += seconds_since(write_begin);
@@ -281,6 +282,12 @@ class Run {
   }
 
   void apply(const fs::path& path, const std::string& frame_hash) {
+    const auto begin = Clock::now();
+    read_and_apply(path, frame_hash);
+    seconds_["apply"] += seconds_since(begin);
+  }
+
+  void read_and_apply(const fs::path& path, const std::string& frame_hash) {
     const common::Split split = common::read_split(path);
     if (split.frame_hash != frame_hash) {
       throw common::bad_input(fmt::format("{}: answers a frame with payload hash {}, expected {}", path.string(),
@@ -326,12 +333,20 @@ class Run {
 
   void warn(const std::string& text) const { ports_.progress(warning_event(text)); }
 
+  // Seconds in shear that are not stepping.
+  double seconds_of_coupling() { return seconds_["write"] + seconds_["exchange"] + seconds_["apply"]; }
+
   void write_profile() {
     if (options_.profile.empty()) return;
     nlohmann::ordered_json json;
     for (const auto& [phase, seconds] : seconds_) json["seconds"][phase] = seconds;
     if (engine_) {
       json["counts"] = {{"steps", engine_->state().step}, {"contact_steps", engine_->contact_steps()}};
+    }
+    if (options_.profile == "-") {
+      json["event"] = "profile";
+      ports_.progress(json.dump());
+      return;
     }
     const std::string text = json.dump(2) + "\n";
     common::write_atomically(options_.profile, std::as_bytes(std::span(text)), {});

@@ -32,6 +32,14 @@ void say(const std::string& text) {
   fmt::print(stderr, "xfem: {}\n", text);
 }
 
+void tell_profile(const std::string& file, const xfem::PhaseSeconds& seconds, const xfem::PhaseCounts& counts) {
+  if (file == "-") {
+    fmt::print(stderr, "{}\n", xfem::profile_event(seconds, counts));
+  } else if (!file.empty()) {
+    xfem::write_profile(file, seconds, counts);
+  }
+}
+
 common::Scene breakable_scene(const Arguments& arguments) {
   common::Scene scene = common::read_scene(arguments.config, arguments.overrides);
   if (!scene.effects.breakage)
@@ -46,12 +54,13 @@ void solve(const Arguments& arguments) {
   if (!arguments.previous.empty()) previous = arguments.previous;
   const auto& answer = service.solve(arguments.frame, previous, arguments.out);
   say(xfem::summary_line(answer.split));
-  if (!arguments.profile.empty()) xfem::write_profile(arguments.profile, answer.seconds, answer.counts);
+  tell_profile(arguments.profile, answer.seconds, answer.counts);
 }
 
 void serve(const Arguments& arguments) {
   xfem::SplitService service(breakable_scene(arguments), arguments.threads, say);
-  xfem::serve(service, std::cin, std::cout);
+  const xfem::Profile sums = xfem::serve(service, std::cin, std::cout);
+  tell_profile(arguments.profile, sums.seconds, sums.counts);
 }
 
 void lab(const Arguments& arguments) {
@@ -99,10 +108,12 @@ int run(int argc, char** argv) {
   solving->add_option("frame", arguments.frame, "Frame (HDF5)")->required();
   solving->add_option("--previous", arguments.previous, "Split of the frame before: the cracks so far");
   solving->add_option("--out", arguments.out, "Split to write (HDF5)")->required();
-  solving->add_option("--profile", arguments.profile, "Write seconds and counts per phase (JSON)");
-  add_case_options(*solving, arguments);
-
-  add_case_options(*command("serve", "Stay resident: `solve FRAME PREVIOUS|- OUT` lines on stdin", serve), arguments);
+  CLI::App* serving = command("serve", "Stay resident: `solve FRAME PREVIOUS|- OUT` lines on stdin", serve);
+  for (CLI::App* one : {solving, serving}) {
+    one->add_option("--profile", arguments.profile,
+                    "Write seconds and counts per phase (JSON); -: as one line to stderr");
+    add_case_options(*one, arguments);
+  }
 
   CLI::App* testing = command("lab", "Run a single-specimen laboratory test", lab);
   testing->add_option("test", arguments.config, "Laboratory test (YAML)")->required();

@@ -7,6 +7,10 @@
 
 namespace xfem {
 
+std::string profile_event(const PhaseSeconds& seconds, const PhaseCounts& counts) {
+  return nlohmann::ordered_json{{"event", "profile"}, {"seconds", seconds}, {"counts", counts}}.dump();
+}
+
 void write_profile(const std::filesystem::path& file, const PhaseSeconds& seconds, const PhaseCounts& counts) {
   nlohmann::ordered_json profile;
   profile["seconds"] = seconds;

@@ -27,12 +27,14 @@ std::string error_line(common::ExitCode code, std::string text) {
   return fmt::format("error {} {}", static_cast<int>(code), text);
 }
 
-std::string answer_to(SplitService& service, const std::vector<std::string>& words) {
+std::string answer_to(SplitService& service, const std::vector<std::string>& words, Profile& sums) {
   if (words.size() != 4 || words[0] != "solve")
     throw common::bad_input("serve: expected `solve FRAME PREVIOUS|- OUT` (paths without spaces) or `done`");
   std::optional<std::filesystem::path> previous;
   if (words[2] != "-") previous = words[2];
   const SplitService::Answer& answer = service.solve(words[1], previous, words[3]);
+  for (const auto& [phase, seconds] : answer.seconds) sums.seconds[phase] += seconds;
+  for (const auto& [name, count] : answer.counts) sums.counts[name] += count;
   return fmt::format("split {} {} {}", words[3], answer.file.bytes, answer.file.payload_hash);
 }
 
@@ -88,7 +90,8 @@ const SplitService::Answer& SplitService::solve(const std::filesystem::path& fra
   return last_;
 }
 
-void serve(SplitService& service, std::istream& in, std::ostream& out) {
+Profile serve(SplitService& service, std::istream& in, std::ostream& out) {
+  Profile sums;
   std::string line;
   while (std::getline(in, line)) {
     std::istringstream stream(line);
@@ -96,14 +99,15 @@ void serve(SplitService& service, std::istream& in, std::ostream& out) {
     for (std::string word; stream >> word;) words.push_back(word);
     const bool done = words.size() == 1 && words[0] == "done";
     try {
-      out << (done ? "done" : answer_to(service, words)) << std::endl;
+      out << (done ? "done" : answer_to(service, words, sums)) << std::endl;
     } catch (const common::Error& error) {
       out << error_line(error.code(), error.what()) << std::endl;
     } catch (const std::exception& error) {
       out << error_line(common::ExitCode::numerical_failure, error.what()) << std::endl;
     }
-    if (done) return;
+    if (done) break;
   }
+  return sums;
 }
 
 std::string summary_line(const common::Split& split) {

@@ -14,6 +14,12 @@ namespace xfem {
 /// Receives sentences for people (warnings, summaries).
 using Notify = std::function<void(const std::string&)>;
 
+/// What the work took, by phase.
+struct Profile {
+  PhaseSeconds seconds;
+  PhaseCounts counts;
+};
+
 /// Reads frames and previous splits, solves, writes splits. Keeps the split that it wrote last in memory, and takes it
 /// instead of the file as long as that file is still the one that it wrote.
 class SplitService {
@@ -49,7 +55,8 @@ class SplitService {
 
 /// Reads lines `solve FRAME PREVIOUS|- OUT` (paths without white space), answers each with `split OUT BYTES HASH`, or
 /// with `error CODE TEXT`, and goes on; `done` is answered by `done` and ends, so does the end of the input.
-void serve(SplitService& service, std::istream& in, std::ostream& out);
+/// Returns seconds and counts, summed over the answers.
+Profile serve(SplitService& service, std::istream& in, std::ostream& out);
 
 /// One line for people: particles by status, growth steps.
 std::string summary_line(const common::Split& split);

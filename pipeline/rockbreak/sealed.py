@@ -18,6 +18,15 @@ def seal_of(image):
 
 def open_sealed(path):
     """An open h5py.File to read from. Raises RockbreakError if the file is missing, damaged or not sealed."""
+    sealed_content(path)
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise RockbreakError(IO_FAILURE, f"{path}: unreadable: {error}") from error
+
+
+def sealed_content(path):
+    """The bytes of a file. Raises as open_sealed."""
     try:
         content = path.read_bytes()
     except OSError as error:
@@ -28,7 +37,4 @@ def open_sealed(path):
                              "it was cut short or written by another program")
     if seal != seal_of(image):
         raise RockbreakError(IO_FAILURE, f"{path}: unreadable: damaged, its bytes do not match the checksum at its end")
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        raise RockbreakError(IO_FAILURE, f"{path}: unreadable: {error}") from error
+    return content

@@ -40,8 +40,14 @@ def option(arguments, name, default=None):
     return arguments[arguments.index(name) + 1] if name in arguments else default
 
 
+def tell_profile(arguments, **seconds):
+    if option(arguments, "--profile") == "-":
+        print(json.dumps({"event": "profile", "seconds": seconds, "counts": {}}), file=sys.stderr)
+
+
 class FakeDem:
     def __init__(self, arguments):
+        self.arguments = arguments
         self.serve = "--serve" in arguments
         self.until = int(option(arguments, "--until-frame", -1))
         self.case = resolved(arguments)
@@ -51,7 +57,8 @@ class FakeDem:
         self.run.path.mkdir(parents=True, exist_ok=True)
         self.run.case_file.write_text(yaml.safe_dump(self.case))
         self.last = self.case["shear"]["frames"] - 1
-        log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in ("--out", "--set")),
+        unlogged = ("--out", "--set", "--profile")
+        log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in unlogged),
             *([self.until] if self.until >= 0 else []))
 
     def write(self, k):
@@ -79,6 +86,11 @@ class FakeDem:
         return f"frame {k} {path} {path.stat().st_size} {value}"
 
     def main(self):
+        code = self.work()
+        tell_profile(self.arguments, preparation=0.25, shear=0.5, write=7.0, exchange=7.0)
+        return code
+
+    def work(self):
         newest = self.run.newest_valid_frame()
         if newest is not None and attributes(self.run.frame_file(newest))["final"]:
             return 0
@@ -128,6 +140,7 @@ def xfem(arguments):
         if solve(arguments[1], option(arguments, "--previous"), option(arguments, "--out"), fake) is None:
             print("xfem: error: particle 3: singular matrix", file=sys.stderr)
             return 3
+        tell_profile(arguments, analysis=0.125, read=7.0, write=7.0, total=7.0)
         return 0
     log("xfem serve")
     for line in sys.stdin:
@@ -138,6 +151,7 @@ def xfem(arguments):
             print("error 3 particle 3: singular matrix", flush=True)
             return 3
         print(answer, flush=True)
+    tell_profile(arguments, analysis=0.125, read=7.0, write=7.0, total=7.0)
     return 0
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from conftest import REPOSITORY
 from rockbreak.run.child import executable
+from rockbreak.run.ledger import read_ledger
 from rockbreak.run.run_directory import RunDirectory, attributes
 
 SCENE = REPOSITORY / "configs" / "demo.yaml"
@@ -70,6 +71,17 @@ def test_particles_break_and_nothing_is_lost(summary):
     assert summary["particles_final"] > summary["particles_initial"] >= 60
     assert summary["solid_area_error"] <= 1e-12
     assert summary["momentum_error"] <= 1e-9
+
+
+def test_both_programs_tell_where_their_time_went(reference, summary):
+    """Phases are disjoint: none is negative, together they are no longer than the loop."""
+    (end,) = [event for event in read_ledger(reference.ledger_file) if event["event"] == "end"]
+    dem, xfem, wall = (end["phases"][name] for name in ("dem", "xfem", "wall"))
+    assert set(dem) == {"preparation", "shear", "write", "apply", "exchange"} and min(dem.values()) > 0
+    assert {"read", "screening", "analysis", "write", "total"} <= set(xfem) and min(xfem.values()) >= 0
+    assert 0.5 * wall < sum(dem.values()) <= wall
+    assert sum(xfem.values()) - xfem["total"] <= xfem["total"] <= dem["exchange"]
+    assert 0 < summary["coupling_overhead"] < 0.5
 
 
 def test_one_shot_processes_and_more_threads_give_the_same_payloads(reference, tmp_path):

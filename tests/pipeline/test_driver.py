@@ -105,6 +105,26 @@ def test_a_scene_without_breakage_never_starts_xfem(work, mode):
     assert len(work.events("frame")) == 4
 
 
+@pytest.mark.parametrize("mode, times", [("resident", 1), ("oneshot", 4)])
+def test_what_the_programs_measured_is_summed_in_the_ledger_and_the_summary(work, mode, times):
+    """The fakes claim 0.75 s of work of dem and 0.125 s of xfem per process, whatever they took."""
+    work.scene()
+    assert work.run("--mode", mode).returncode == 0
+    (end,) = work.events("end")
+    phases = end["phases"]
+    assert phases["dem"]["shear"] == times * 0.5 and phases["xfem"]["analysis"] == times * 0.125
+    assert 0 < phases["wall"] < 60
+    summary = json.loads(work.directory.summary_file.read_text())
+    assert summary["coupling_overhead"] == pytest.approx(1 - times * 0.875 / phases["wall"], abs=1e-4)
+
+
+def test_the_ledger_of_a_frame_is_written_before_its_split_stands_and_of_a_split_before_the_next_frame(work):
+    work.scene(xfem_error_at=2)
+    assert work.run().returncode == 3
+    assert [(e["event"], e["frame"]) for e in read_ledger(work.directory.ledger_file) if e["event"] in (
+        "frame", "split")] == [("frame", 0), ("split", 0), ("frame", 1), ("split", 1), ("frame", 2)]
+
+
 def test_stdout_names_the_result_alone_and_stderr_is_json_lines(work):
     work.scene()
     process = work.run()

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from rockbreak.errors import RockbreakError
-from rockbreak.run.ledger import Ledger, read_ledger, seconds_per_phase
+from rockbreak.run.ledger import Ledger, coupling_overhead, read_ledger, seconds_per_phase
 
 
 def test_events_come_back_in_order(tmp_path):
@@ -54,3 +54,15 @@ def test_seconds_are_summed_per_phase_over_all_resumptions():
               {"event": "split", "seconds": {"xfem": 0.5, "handover": 0.1}}, {"event": "end"},
               {"event": "frame", "seconds": {"dem": 2.0}}, {"event": "report", "seconds": {"report": 4}}]
     assert seconds_per_phase(events) == {"dem": 3.0, "xfem": 0.5, "handover": 0.1, "report": 4.0, "total": 7.6}
+
+
+def test_the_coupling_overhead_is_what_is_neither_stepping_nor_solving():
+    """By hand: of 20 + 5 s, 14 + 2 s are stepping and preparation, 4 s are solving; a killed start tells nothing."""
+    dem = {"preparation": 6.0, "shear": 8.0, "write": 1.0, "apply": 0.5, "exchange": 5.0}
+    xfem = {"loads": 1.0, "analysis": 3.0, "read": 0.5, "write": 0.25, "total": 4.75}
+    events = [{"event": "end", "code": 143}, {"event": "frame", "seconds": {"dem": 100.0}},
+              {"event": "end", "code": 0, "phases": {"wall": 20.0, "dem": dem, "xfem": xfem}},
+              {"event": "end", "code": 0, "phases": {"wall": 5.0, "dem": {"shear": 2.0, "write": 1.0}}}]
+    assert coupling_overhead(events) == pytest.approx((20 + 5 - 16 - 4) / 25)
+    assert coupling_overhead(events[:2]) is None
+    assert coupling_overhead([{"event": "end", "code": 0, "phases": {"wall": 0.0}}]) is None

@@ -14,7 +14,7 @@ KEYS = {
     "initial_void_ratio", "final_void_ratio", "void_ratios", "particles_at_strain", "unbalanced_force_at_rest",
     "lateral_stress_error_rms", "contacts_initial", "contacts_peak", "contacts_final", "peak_sin_phi", "peak_strain",
     "residual_sin_phi", "anisotropy_peak", "sin_phi_micro_peak", "solid_area_error", "momentum_error", "energy",
-    "max_inertial_number", "wall_seconds", "steps", "contact_steps"}
+    "max_inertial_number", "wall_seconds", "coupling_overhead", "steps", "contact_steps"}
 
 
 @pytest.fixture(scope="module")

@@ -1,22 +1,20 @@
 """The coupled loop: frame K from `dem`, split K from `xfem`, back to `dem`, until the final frame.
 
-Resident mode talks to two processes that stay (`serve`); one-shot mode starts one process per frame and per split.
-Both give the same payloads; so does a run that was killed and resumed.
+In resident mode both programs stay, in one-shot mode a process is started per frame and per split (programs.py). Both
+give the same payloads; so does a run that was killed and resumed. While a program works, the driver writes its ledger.
 """
 import contextlib
-import re
 import signal
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-
 from .child import Child, user_seconds_of_ended_children
 from ..errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
-from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, refusals_in, written_file
-from ..sealed import open_sealed
+from .programs import OneShotDem, OneShotXfem, ResidentDem, ResidentXfem
+from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, open_written, refusals_of
 
 
 @dataclass
@@ -27,96 +25,6 @@ class Options:
     resume: bool = False
     overrides: list = field(default_factory=list)
     threads: int | None = None
-
-
-class ResidentDem:
-    """`dem run --serve`: one process for the whole run."""
-
-    def __init__(self, run):
-        self._run = run
-        self._child = None
-
-    def first_frame(self, newest):
-        self._child = self._run.start("dem", [*self._run.dem_arguments(), "--serve"])
-        return self._next()
-
-    def next_frame(self, k, split):
-        self._child.send(f"resume {split or '-'}")
-        return self._next()
-
-    def _next(self):
-        line = self._child.receive()
-        if line == "done":
-            self._child.finish()
-            return None
-        match = re.fullmatch(r"frame (\d+) (.+) (\d+) ([0-9a-f]+)", line)
-        if not match:
-            raise RockbreakError(IO_FAILURE, f"dem: expected `frame K PATH BYTES HASH`, found `{line}`")
-        return int(match[1])
-
-    def finish(self, k):
-        """After the final frame; its split is not applied."""
-        self._child.send("resume -")
-        line = self._child.receive()
-        if line != "done":
-            raise RockbreakError(IO_FAILURE, f"dem: expected `done` after the final frame {k}, found `{line}`")
-        self._child.finish()
-
-
-class OneShotDem:
-    """`dem run --until-frame K --resume`: one process per frame; it finds the split of the frame before by itself."""
-
-    def __init__(self, run):
-        self._run = run
-
-    def first_frame(self, newest):
-        return self._until(0 if newest is None else newest + 1)
-
-    def next_frame(self, k, split):
-        return self._until(k + 1)
-
-    def _until(self, k):
-        self._run.start("dem", [*self._run.dem_arguments(), "--until-frame", str(k)]).finish()
-        return k if self._run.directory.frame_file(k).exists() else None
-
-    def finish(self, k):
-        pass
-
-
-class ResidentXfem:
-    """`xfem serve`. It works inside the run directory, so that no path of its protocol can hold a blank."""
-
-    def __init__(self, run):
-        self._run = run
-        self._child = None
-
-    def solve(self, frame, previous, out):
-        if self._child is None:
-            self._child = self._run.start("xfem", ["serve", "--config", "case.yaml", *self._run.threads()],
-                                          cwd=self._run.directory.path)
-        self._child.send(f"solve {frame} {previous or '-'} {out}")
-        line = self._child.receive()
-        if not re.fullmatch(r"split (.+) (\d+) ([0-9a-f]+)", line):
-            raise RockbreakError(IO_FAILURE, f"xfem: expected `split OUT BYTES HASH`, found `{line}`")
-
-    def finish(self):
-        if self._child is not None:
-            self._child.finish()
-
-
-class OneShotXfem:
-    """`xfem solve`: one process per split."""
-
-    def __init__(self, run):
-        self._run = run
-
-    def solve(self, frame, previous, out):
-        self._run.start("xfem", ["solve", frame, "--config", "case.yaml", "--out", out,
-                                 *(["--previous", previous] if previous else []), *self._run.threads()],
-                        cwd=self._run.directory.path).finish()
-
-    def finish(self):
-        pass
 
 
 class Run:
@@ -132,6 +40,7 @@ class Run:
         self._broken = None
         self._breakable = None
         self._target_strain = None
+        self.phases = {}  # program -> phase -> seconds, as told by children that came to their end
         self._dem = ResidentDem(self) if options.mode == "resident" else OneShotDem(self)
         self._xfem = ResidentXfem(self) if options.mode == "resident" else OneShotXfem(self)
 
@@ -144,7 +53,7 @@ class Run:
         """Always --resume: whether the directory may be used has been settled here."""
         overrides = [word for override in self.options.overrides for word in ("--set", override)]
         return ["run", str(self.options.case), "--out", str(self.options.out), "--resume", *overrides,
-                *self.threads()]
+                *self.threads(), "--profile", "-"]
 
     def start(self, name, arguments, cwd=None):
         self._children = [child for child in self._children if child.is_alive()]
@@ -153,6 +62,11 @@ class Run:
         return child
 
     def child_event(self, name, event):
+        if event["event"] == "profile":
+            spent = self.phases.setdefault(name, {})
+            for phase, seconds in event["seconds"].items():
+                spent[phase] = round(spent.get(phase, 0.0) + seconds, 6)
+            return
         if event["event"] == "warning":
             self._ledger.write("warning", **{"source": name, **{k: v for k, v in event.items()
                                                                 if k not in ("event", "time")}})
@@ -169,8 +83,10 @@ class Run:
     # -- the loop
 
     def execute(self):
+        begin = time.perf_counter()
         try:
             self._loop()
+            self.phases["wall"] = round(time.perf_counter() - begin, 6)
         except Interrupted as interrupt:
             self._stop_children(interrupt.signum)
             raise
@@ -191,23 +107,26 @@ class Run:
             if self._is_final(newest):
                 return
         clock = time.perf_counter()
-        k = self._dem.first_frame(newest)
-        while k is not None:
-            arrived = time.perf_counter()
+        self._dem.begin(newest)
+        while (k := self._dem.frame()) is not None:
+            arrived = asked = answered = time.perf_counter()
             self._learn_case()
-            final = self._register_frame(k, dem_seconds=arrived - clock)
-            split = None
-            waited = 0.0
             if self._breakable:
-                waited = self._solve(k)
-                split = self.directory.split_file(k)
-            self._register_split(k, waited, handover=time.perf_counter() - arrived - waited)
+                asked = time.perf_counter()
+                self._ask(k)
+            final = self._register_frame(k, dem_seconds=arrived - clock)  # meanwhile xfem is at work
+            if self._breakable:
+                self._xfem.answer()
+                answered = time.perf_counter()
+            if not final:
+                self._dem.proceed(k, self.directory.split_file(k) if self._breakable else None)
+            clock = time.perf_counter()
+            waited = answered - asked
+            self._register_split(k, waited, handover=clock - arrived - waited)  # meanwhile dem is
             if final:
                 self._dem.finish(k)
                 self._xfem.finish()
                 return
-            clock = time.perf_counter()
-            k = self._dem.next_frame(k, split)
         raise RockbreakError(IO_FAILURE, "dem ended before the final frame")
 
     def _learn_case(self):
@@ -244,38 +163,31 @@ class Run:
         self._broken = sum(broken_in(self.directory.split_file(k)) for k in range(first + 1))
         for k in range(first + 1, newest + 1):
             begin = time.perf_counter()
-            waited = self._solve(k)
-            self._register_split(k, waited, handover=time.perf_counter() - begin - waited)
+            self._ask(k)
+            self._xfem.answer()
+            self._register_split(k, waited=time.perf_counter() - begin, handover=0.0)
 
-    def _solve(self, k):
-        """Seconds that xfem took for split k."""
-        begin = time.perf_counter()
-        self._xfem.solve(f"frames/{k:06d}.h5", f"splits/{k - 1:06d}.h5" if k > 0 else None, f"splits/{k:06d}.h5")
-        return time.perf_counter() - begin
+    def _ask(self, k):
+        self._xfem.ask(f"frames/{k:06d}.h5", f"splits/{k - 1:06d}.h5" if k > 0 else None, f"splits/{k:06d}.h5")
 
     def _register_frame(self, k, dem_seconds):
-        path = self.directory.frame_file(k)
-        try:
-            with open_sealed(path) as file:
-                state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
-                         "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
-                final = bool(file.attrs["final"])
-        except (OSError, KeyError) as error:
-            raise RockbreakError(IO_FAILURE, f"{path}: not a readable frame: {error}") from error
-        self._ledger.write("frame", **state, final=final, **written_file(path),
-                           seconds={"dem": round(dem_seconds, 6)})
+        with open_written(self.directory.frame_file(k), "frame") as (file, written):
+            state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
+                     "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
+            final = bool(file.attrs["final"])
+        self._ledger.write("frame", **state, final=final, **written, seconds={"dem": round(dem_seconds, 6)})
         self._progress.frame({**state, "broken": self._broken, "target_strain": self._target_strain})
         return final
 
     def _register_split(self, k, waited, handover):
-        path = self.directory.split_file(k)
         if not self._breakable:
             return
-        broken = broken_in(path)
+        with open_written(self.directory.split_file(k), "split") as (file, written):
+            broken, refusals = len(file["broken/parent"]), refusals_of(file)
         self._broken += broken
-        self._ledger.write("split", frame=k, broken=broken, **written_file(path),
+        self._ledger.write("split", frame=k, broken=broken, **written,
                            seconds={"xfem": round(waited, 6), "handover": round(handover, 6)})
-        for particle, reason in refusals_in(path):
+        for particle, reason in refusals:
             self.child_event("xfem", {"event": "warning", "frame": k, "particle": particle,
                                       "text": f"frame {k}: particle {particle}: analysis refused: {reason}"})
 
@@ -323,5 +235,5 @@ def drive(options, progress):
                 with contextlib.suppress(RockbreakError):  # the ledger may be what fails
                     ledger.write("end", code=end.code, reason=end.reason, **cpu_seconds())
                 raise
-            ledger.write("end", code=0, **cpu_seconds())
+            ledger.write("end", code=0, phases=run.phases, **cpu_seconds())
     return directory

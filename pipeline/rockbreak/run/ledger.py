@@ -99,3 +99,21 @@ def seconds_per_phase(events):
                 seconds[phase] += value
     seconds["total"] = sum(seconds.values())
     return seconds
+
+
+WORK_OF_DEM = ("preparation", "shear")
+FILES_OF_XFEM = ("read", "write", "total")
+
+
+def coupling_overhead(events):
+    """Share of the coupled loop's wall time that is neither stepping in dem nor solving in xfem: files, checks, hashes,
+    messages, starting and waiting. Over all starts that came to their end; None if there is none.
+
+        1 - (preparation + shear of dem + every phase of xfem but read and write) / wall
+    """
+    ends = [event["phases"] for event in events if event["event"] == "end" and event.get("phases", {}).get("wall")]
+    wall = sum(phases["wall"] for phases in ends)
+    work = sum(phases.get("dem", {}).get(phase, 0.0) for phases in ends for phase in WORK_OF_DEM)
+    work += sum(seconds for phases in ends for phase, seconds in phases.get("xfem", {}).items()
+                if phase not in FILES_OF_XFEM)
+    return 1 - work / wall if wall else None

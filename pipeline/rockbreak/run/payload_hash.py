@@ -12,6 +12,7 @@ rank and dimensions (uint64), its row-major little-endian values; of strings eac
 import ctypes
 import struct
 import sys
+from functools import cache
 
 import h5py
 import numpy as np
@@ -23,12 +24,17 @@ class _Hash128(ctypes.Structure):
     _fields_ = [("low", ctypes.c_uint64), ("high", ctypes.c_uint64)]
 
 
+@cache
+def _library_function():
+    function = ctypes.CDLL("libxxhash.so.0").XXH3_128bits
+    function.restype = _Hash128
+    function.argtypes = [ctypes.c_char_p, ctypes.c_size_t]
+    return function
+
+
 def xxh3_128(data):
     """Hex XXH3-128 of some bytes."""
-    library = ctypes.CDLL("libxxhash.so.0")
-    library.XXH3_128bits.restype = _Hash128
-    library.XXH3_128bits.argtypes = [ctypes.c_char_p, ctypes.c_size_t]
-    value = library.XXH3_128bits(data, len(data))
+    value = _library_function()(data, len(data))
     return f"{value.high:016x}{value.low:016x}"
 
 

@@ -5,13 +5,15 @@ paraview/000000.h5
 """
 import fcntl
 import os
+from contextlib import contextmanager
 from pathlib import Path
 
+import h5py
 import yaml
 
 from ..errors import BAD_INPUT, IO_FAILURE, RockbreakError, cannot
 from .payload_hash import payload_hash, xxh3_128
-from ..sealed import open_sealed
+from ..sealed import open_sealed, sealed_content
 
 DRIVER_FILES = {".lock", "run.jsonl"}  # all that a run leaves which failed before it began
 
@@ -150,31 +152,40 @@ def is_valid(path):
         return False
 
 
-def written_file(path):
-    """What the ledger keeps of a file: name in its folder, size, payload hash and hash of the whole file."""
-    content = path.read_bytes()
-    return {"path": f"{path.parent.name}/{path.name}", "bytes": len(content),
-            "payload_hash": attributes(path).get("payload_hash"), "file_hash": xxh3_128(content)}
+@contextmanager
+def open_written(path, kind):
+    """(open file, what the ledger keeps of it: name in its folder, size, payload hash, hash of the whole file) of a frame
+    or split that has just been written; it is read once."""
+    content = sealed_content(path)
+    try:
+        with h5py.File(path, "r") as file:
+            yield file, {"path": f"{path.parent.name}/{path.name}", "bytes": len(content),
+                         "payload_hash": plain(file.attrs.get("payload_hash")), "file_hash": xxh3_128(content)}
+    except (OSError, KeyError) as error:
+        raise RockbreakError(IO_FAILURE, f"{path}: not a readable {kind}: {error}") from error
 
 
 def broken_in(split_file):
     """Number of particles that a split breaks; 0 if it does not exist."""
-    if not split_file.exists():
-        return 0
-    try:
-        with open_sealed(split_file) as file:
-            return len(file["broken/parent"])
-    except (OSError, KeyError) as error:
-        raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error
+    return _read(split_file, lambda split: len(split["broken/parent"]), 0)
 
 
 def refusals_in(split_file):
     """(particle, reason) of every analysis that a split refused; none if it does not exist."""
+    return _read(split_file, refusals_of, [])
+
+
+def _read(split_file, content, otherwise):
     if not split_file.exists():
-        return []
+        return otherwise
     try:
-        with open_sealed(split_file) as file:
-            particles = [int(particle) for particle in file["refusals/particle"][:]] if "refusals" in file else []
-            return list(zip(particles, map(str, file["refusals/reason"].asstr()[:]))) if particles else []
+        with open_sealed(split_file) as split:
+            return content(split)
     except (OSError, KeyError) as error:
         raise RockbreakError(IO_FAILURE, f"{split_file}: not a readable split: {error}") from error
+
+
+def refusals_of(split):
+    """As refusals_in, of an open file."""
+    particles = [int(particle) for particle in split["refusals/particle"][:]] if "refusals" in split else []
+    return list(zip(particles, map(str, split["refusals/reason"].asstr()[:]))) if particles else []

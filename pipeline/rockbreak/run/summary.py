@@ -4,7 +4,7 @@ import json
 import numpy as np
 
 from .history import running_mean, shear_rows, sin_phi
-from .ledger import seconds_per_phase
+from .ledger import coupling_overhead, seconds_per_phase
 from .results import nearest
 from .run_directory import write_text
 
@@ -76,6 +76,7 @@ def summarize(results):
         "max_inertial_number": largest(shear, "inertial_number"),
         "wall_seconds": wall_seconds(results.ledger()),
         "cpu_seconds": cpu_seconds(results.ledger()),
+        "coupling_overhead": rounded(coupling_overhead(results.ledger()), 4),
         "steps": last["step"],
         "contact_steps": integer(at(history, "contact_steps", -1)),
     }
@@ -120,6 +121,10 @@ def at(rows, column, index):
 
 def largest(rows, column):
     return float(np.max(rows[column])) if column in rows and len(rows[column]) else None
+
+
+def rounded(value, digits):
+    return None if value is None else round(value, digits)
 
 
 def integer(value):

@@ -61,9 +61,15 @@ TEST_CASE("solve is silent on stdout, and serve writes the same bytes") {
   CHECK(profile["seconds"]["analysis"] > 0);
   CHECK(profile["counts"]["particles"] == 19);
 
-  const Outcome served = run(work.directory, "serve --config " + work.at("case.yaml"),
-                             "solve " + work.at("frame.h5") + " - " + work.at("b.h5") + "\n");
+  const std::string order = "solve " + work.at("frame.h5") + " - " + work.at("b.h5") + "\n";
+  const Outcome served =
+      run(work.directory, "serve --profile - --config " + work.at("case.yaml"), order + order + "done\n");
   CHECK(served.code == 0);
+  const std::size_t event = served.err.find(R"({"event":"profile")");
+  REQUIRE(event != std::string::npos);
+  const auto sums = nlohmann::json::parse(served.err.substr(event));
+  CHECK(sums["seconds"]["analysis"] > 0);
+  CHECK(sums["counts"]["particles"] == 2 * 19);
   const std::string bytes = text_of(work.directory / "a.h5");
   CHECK_THAT(served.out, Catch::StartsWith("split " + work.at("b.h5") + " " + std::to_string(bytes.size()) + " "));
   CHECK(text_of(work.directory / "b.h5") == bytes);
