@@ -137,6 +137,7 @@ def test_motion_void_ratio_and_breakage_are_those_that_were_written(observed):
     assert found["void_ratio_rise", "end"] == pytest.approx(0.3 * 0.173)
     assert found["lateral_stretch", "end"] == pytest.approx(0.9 * 0.173)
     assert found["percentage_of_breakage", "end"] == pytest.approx(100 * 10 / 48)
+    assert found["outer_over_inner", "end"] > 1  # farther from the fixed corner, too
     assert found["largest_displacement", "start"] == 0 and ("outer_over_inner", "start") not in found
     assert found["uniformity_of_sizes", "end"] > found["uniformity_of_sizes", "start"]
     assert found["breakage_outside_over_inside", "end"] == outside_over_inside(results)

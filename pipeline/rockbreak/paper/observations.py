@@ -31,7 +31,7 @@ WORDS = LABELS | {
     "lateral_stretch": "lateral expansion of the assembly", "void_ratio": "void ratio e4",
     "void_ratio_rise": "rise of void ratio e4", "percentage_of_breakage": "new particles, % of 1194",
     "breakage_outside_over_inside": "share of particles that break, outer over inner half",
-    "eq10_error": "mean |Eq. 10 − Eq. 12|", "eq11_error": "mean of Eq. 11 − Eq. 12",
+    "eq10_error": "mean size of Eq. 10 − Eq. 12", "eq11_error": "mean of Eq. 11 − Eq. 12",
     "weak_share": "share of weak forces", "loaded_vertical": "particles of medium and high vertical stress",
     "loaded_horizontal": "particles of medium and high horizontal stress",
     "moderate_and_strong": "moderate and strong forces", "outer_over_inner": "outer over inner mean displacement",
@@ -89,8 +89,9 @@ def frame_numbers(frame, fit):
         "mean_force": 1e-3 * force.mean(), "shear_over_normal": shear.mean() / force.mean(),
         "gini": shares.gini, "top_tenth": shares.top_tenth, "tail_exponent": beta,
         "force_scatter": 1e-3 * force.std(), "uniformity_of_sizes": frame_gradation(frame).uniformity,
-        "largest_displacement": moved.max(), "inner_displacement": moved[inner].mean(),
-        "outer_displacement": moved[~inner].mean(), "lateral_stretch": -motion.strain[0],
+        "largest_displacement": moved.max(),
+        "outer_over_inner": moved[~inner].mean() / moved[inner].mean() if moved[inner].any() else None,
+        "lateral_stretch": -motion.strain[0],
     }
 
 
