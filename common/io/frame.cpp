@@ -151,6 +151,13 @@ void validate_checkpoint(const Frame& frame, const Source& source) {
     source.fail("attribute next_id",
                 fmt::format("is {}, expected more than the largest particle id {}", frame.next_id, p.id.back()));
   }
+  constexpr std::int64_t kLargest = std::int64_t{1} << 62;  // what goes on from here still counts upward
+  for (const auto& [name, value] :
+       {std::pair{"frame", frame.frame}, {"step", frame.step}, {"next_id", frame.next_id}}) {
+    if (value < 0 || value > kLargest) {
+      source.fail(fmt::format("attribute {}", name), fmt::format("is {}, expected 0 to {}", value, kLargest));
+    }
+  }
 }
 
 void validate(const Frame& frame, FrameContent content, const Source& source) {

@@ -256,7 +256,9 @@ std::vector<Fault> faults_for_dem() {
       with("particles/mass", std::vector<double>{1, 1, 0, 1},
            "dataset particles/mass: entry 2 is 0, expected more than 0"),
       {"attribute next_id: is 40, expected more than the largest particle id 40",
-       [](Contents& c) { c["@next_id"] = scalar_item(std::int64_t{40}); }}};
+       [](Contents& c) { c["@next_id"] = scalar_item(std::int64_t{40}); }},
+      {"attribute step: is 9223372036854775807, expected 0 to 4611686018427387904",
+       [](Contents& c) { c["@step"] = scalar_item(std::numeric_limits<std::int64_t>::max()); }}};
   faults.insert(faults.end(), others.begin(), others.end());
   return faults;
 }
