@@ -15,7 +15,7 @@ SCENE = HERE / "scene.yaml"
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
 from rockbreak.run.run_directory import RunDirectory, attributes  # noqa: E402
 
-WITH_TIMES = ("wall_seconds", "cpu_seconds")  # of summary.json
+WITH_TIMES = ("wall_seconds", "cpu_seconds", "coupling_overhead")  # of summary.json
 TIMED_FIGURE = "phases.png"
 
 
