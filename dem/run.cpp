@@ -338,7 +338,7 @@ class Run {
 
   void write_profile() {
     if (options_.profile.empty()) return;
-    nlohmann::ordered_json json;
+    nlohmann::ordered_json json{{"seconds", nlohmann::ordered_json::object()}};  // none if interrupted early
     for (const auto& [phase, seconds] : seconds_) json["seconds"][phase] = seconds;
     if (engine_) {
       json["counts"] = {{"steps", engine_->state().step}, {"contact_steps", engine_->contact_steps()}};
