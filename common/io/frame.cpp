@@ -292,24 +292,36 @@ WrittenFile write_frame(const std::filesystem::path& path, Frame& frame, Durabil
 
 Frame read_frame(const std::filesystem::path& path, FrameContent content) {
   const Source source{path.string(), ExitCode::bad_input};
-  const Contents contents = read_hdf5(path);
   const bool all = content == FrameContent::everything;
+  const bool only_state = content == FrameContent::contact_state;
   Frame frame;
+  std::set<std::string> state;
+  const auto list = [&state](const char* name, const auto&, const char*, const char*, bool needed) {
+    if (needed) state.insert(name);
+  };
+  particle_fields(frame.particles, list);
+  outline_fields(frame.particles, list);
+  contact_fields(frame.contacts, list);
+  const Contents contents = read_hdf5(path, only_state ? &state : nullptr);
   read_attributes(contents, all, source, frame);
   const auto get = [&](const char* name, auto& values, const char*, const char*, bool needed) {
     using Element = typename std::remove_reference_t<decltype(values)>::value_type;
-    if (all || needed || contents.contains(name)) values = get_column<Element>(contents, name, source);
+    if (needed || all || (!only_state && contents.contains(name))) {
+      values = get_column<Element>(contents, name, source);
+    }
   };
   particle_fields(frame.particles, get);
   outline_fields(frame.particles, get);
   if (content != FrameContent::particles || contents.contains("contacts/a")) contact_fields(frame.contacts, get);
-  if (contents.contains(kSlip)) frame.contacts.shear_displacement = get_column<double>(contents, kSlip, source);
-  if (contents.contains(kRolling)) frame.contacts.rolling_moment = get_column<double>(contents, kRolling, source);
-  get(kRing, frame.ring, "", "", false);
-  frame.history = columns_in(contents, "history", source);
-  frame.checkpoint = columns_in(contents, "checkpoint", source);
+  if (!only_state) {
+    if (contents.contains(kSlip)) frame.contacts.shear_displacement = get_column<double>(contents, kSlip, source);
+    if (contents.contains(kRolling)) frame.contacts.rolling_moment = get_column<double>(contents, kRolling, source);
+    get(kRing, frame.ring, "", "", false);
+    frame.history = columns_in(contents, "history", source);
+    frame.checkpoint = columns_in(contents, "checkpoint", source);
+  }
   validate(frame, content, source);
-  frame.payload_hash = payload_hash(contents);
+  get_attribute(contents, "payload_hash", true, source, frame.payload_hash);
   return frame;
 }
 

@@ -82,8 +82,8 @@ struct Frame {
 };
 
 /// What a reader needs: `contact_state` accepts files with only particles/{id,position,angle,boundary,vertex_offset,
-/// vertices} and contacts/{a,b,point,force} (absent arrays come out empty); `particles` does without the contacts,
-/// too; `everything` insists on all.
+/// vertices} and contacts/{a,b,point,force}, and leaves all other arrays empty, in the file or not; `particles` does
+/// without the contacts, too, and reads what is there; `everything` insists on all.
 enum class FrameContent { particles, contact_state, everything };
 
 /// Writes atomically (image + rename). Sets frame.payload_hash. Throws io_failure; then no file of that name changed.

@@ -185,14 +185,6 @@ std::vector<Fault> faults_for_all() {
       with("contacts/b", Ids{9, 17}, "dataset contacts/b: has 2 rows, expected 3"),
       with("contacts/force", std::vector<Vec2>{{0, 0}, {kNan, 0}, {0, 0}},
            "dataset contacts/force: entry 1 is nan, expected a finite number"),
-      with("contacts/normal", std::vector<Vec2>(2, Vec2(0, 1)), "dataset contacts/normal: has 2 rows, expected 3"),
-      with("contacts/shear_displacement", std::vector<double>(4),
-           "dataset contacts/shear_displacement: has 4 rows, expected 3"),
-      with("boundary/ring", Ids{40, 4},
-           "dataset boundary/ring: entry 1 names particle 4, which is not in particles/id"),
-      with("history/step", std::vector<double>{1}, "dataset history/step: has 1 rows, expected 2"),
-      with("checkpoint/energy", std::vector<double>{1, kNan},
-           "dataset checkpoint/energy: entry 1 is nan, expected a finite number"),
       {"dataset particles/angle: type is string, expected float64",
        [](Contents& c) { c["particles/angle"] = text_array_item(std::vector<std::string>(4, "0")); }},
       {"dataset particles/angle: shape is (), expected (n)",
@@ -245,6 +237,14 @@ std::vector<Fault> faults_for_dem() {
   }
   const std::vector<Fault> others = {
       with("contacts/normal", std::vector<Vec2>{}, "dataset contacts/normal: has 0 rows, expected 3"),
+      with("contacts/normal", std::vector<Vec2>(2, Vec2(0, 1)), "dataset contacts/normal: has 2 rows, expected 3"),
+      with("contacts/shear_displacement", std::vector<double>(4),
+           "dataset contacts/shear_displacement: has 4 rows, expected 3"),
+      with("boundary/ring", Ids{40, 4},
+           "dataset boundary/ring: entry 1 names particle 4, which is not in particles/id"),
+      with("history/step", std::vector<double>{1}, "dataset history/step: has 1 rows, expected 2"),
+      with("checkpoint/energy", std::vector<double>{1, kNan},
+           "dataset checkpoint/energy: entry 1 is nan, expected a finite number"),
       with("contacts/a", Ids{9, 3, 9}, "dataset contacts/b: entry 0: particle 9 in contact with itself"),
       with("contacts/a", Ids{17, 3, 9}, "dataset contacts/b: entry 0 is 9, expected more than contacts/a, which is 17"),
       with("contacts/b", Ids{17, 9, 40},
@@ -324,6 +324,32 @@ TEST_CASE("A contact state of another program needs ten datasets and may use oth
         (directory / "foreign.h5").string() + ": attribute schema: missing");
 }
 
+TEST_CASE("A contact state is what xfem needs of a frame, and the hash of all of it") {
+  const Directory directory;
+  Frame written = sample_frame();
+  write_frame(directory / "sealed.h5", written, {});
+  Contents contents = read_hdf5(directory / "sealed.h5");
+  std::vector<std::byte> unsealed = hdf5_image(contents);
+  unsealed.resize(unsealed.size() - kSealBytes);
+  write_atomically(directory / "unsealed.h5", unsealed, {});
+  for (const char* name : {"sealed.h5", "unsealed.h5"}) {
+    CAPTURE(name);
+    const Frame state = read_frame(directory / name, FrameContent::contact_state);
+    CHECK(state.payload_hash == written.payload_hash);
+    CHECK(state.frame == written.frame);
+    CHECK(state.next_id == written.next_id);
+    CHECK(state.particles.id == written.particles.id);
+    CHECK(same_bits(state.particles.vertices, written.particles.vertices));
+    CHECK(same_bits(state.contacts.force, written.contacts.force));
+    CHECK(state.particles.mass.empty());
+    CHECK(state.contacts.normal.empty());
+    CHECK_FALSE(state.contacts.shear_displacement);
+    CHECK(state.ring.empty());
+    CHECK(state.history.empty());
+    CHECK(state.checkpoint.empty());
+  }
+}
+
 TEST_CASE("A frame that its reader would refuse is not written") {
   const Directory directory;
   const auto check_refused = [&](const std::string& message, const std::function<void(Frame&)>& spoil) {
@@ -349,7 +375,7 @@ TEST_CASE("A frame without dem's own arrays can be written, as a contact state")
   frame.particles.mass.clear();
   frame.contacts.normal.clear();
   write_frame(directory / "f.h5", frame, {});
-  check_same(frame, read_frame(directory / "f.h5", FrameContent::contact_state));
+  check_same(frame, read_frame(directory / "f.h5", FrameContent::particles));
   CHECK(error_of([&] { read_frame(directory / "f.h5"); }).text ==
         (directory / "f.h5").string() + ": dataset particles/mass: missing");
 }
