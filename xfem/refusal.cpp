@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 
 #include "common/error.hpp"
@@ -10,11 +11,18 @@
 namespace xfem {
 namespace {
 
-constexpr std::size_t kMostFiles = 10;  // of one frame: a scene that fails everywhere fills no disk
+// A scene that fails everywhere fills no disk, in one frame or over a run that goes on past refusals.
+constexpr std::size_t kMostOfFrame = 10;
+constexpr std::ptrdiff_t kMostFiles = 200;
 
 template <class T>
 void push_if_there(std::vector<T>& to, const std::vector<T>& from, std::size_t i) {
   if (i < from.size()) to.push_back(from[i]);
+}
+
+std::ptrdiff_t files_in(const std::filesystem::path& folder) {
+  std::error_code none;  // a folder that is not there holds no files
+  return std::distance(std::filesystem::directory_iterator(folder, none), {});
 }
 
 }  // namespace
@@ -49,7 +57,6 @@ common::Frame frame_of_particle(const common::Frame& frame, std::int64_t id) {
     own.particles.position.push_back(p.position[i]);
     own.particles.angle.push_back(p.angle[i]);
     own.particles.boundary.push_back(p.id[i] == id ? p.boundary[i] : std::uint8_t{1});
-    push_if_there(own.particles.parent, p.parent, i);
     const common::PolygonView outline = p.outline(i);
     own.particles.vertices.insert(own.particles.vertices.end(), outline.begin(), outline.end());
     own.particles.vertex_offset.push_back(static_cast<std::int64_t>(own.particles.vertices.size()));
@@ -96,7 +103,7 @@ std::vector<std::string> keep_refusals(const common::Frame& frame, const common:
     const std::int64_t id = split.refusals.particle[r];
     std::string text =
         fmt::format("frame {}: particle {}: analysis refused: {}", frame.frame, id, split.refusals.reason[r]);
-    if (r < kMostFiles) {
+    if (r < kMostOfFrame && files_in(folder) < kMostFiles) {
       const std::string name = (folder / fmt::format("frame_{:06}_particle_{}", frame.frame, id)).string();
       try {
         std::error_code error;

@@ -32,3 +32,20 @@ TEST_CASE("alone in its frame a particle comes to the same result, bit for bit")
   CHECK(xfem::refusal_folder("splits/000003.h5") == std::filesystem::path("failure"));
   CHECK(xfem::refusal_folder("again.h5") == std::filesystem::path("failure"));
 }
+
+TEST_CASE("a run that goes on past refusals keeps two hundred files, ten of a frame") {
+  const scratch::Folder directory;
+  common::Frame frame = sample::frame();
+  common::Split split;
+  for (std::size_t i = 0; i < 12; ++i) {
+    split.refusals.particle.push_back(frame.particles.id[i]);
+    split.refusals.reason.push_back("the mesh is too coarse");
+  }
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(directory.path()), std::filesystem::directory_iterator());
+  };
+  for (frame.frame = 0; frame.frame < 25; ++frame.frame) {
+    CHECK(xfem::keep_refusals(frame, nullptr, split, directory.path()).size() == 12);
+    CHECK(files() == std::min<std::ptrdiff_t>(10 * (frame.frame + 1), 200));
+  }
+}
