@@ -13,6 +13,7 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.campaign import biaxial_test as kind
 from rockbreak.campaign.table import read_campaign
 from rockbreak.campaign.tables import numbers_of, scatter
@@ -55,7 +56,7 @@ class Workplace:
 
     def run(self, *arguments, **content):
         process = self.start(*arguments, **content)
-        process.out, process.err = process.communicate(timeout=120)
+        process.out, process.err = process.communicate(timeout=patience(120))
         return process
 
     def calls(self):
@@ -220,7 +221,7 @@ def test_an_interrupted_campaign_ends_its_processes_and_goes_on(work):
     process = work.start("-j", "2", axes=axes)
     wait_for(lambda: list((work.out / "runs").glob("*/frames/000001.h5")))
     process.send_signal(signal.SIGTERM)
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=patience(60))
     assert process.returncode == 143 and "interrupted; go on with the same command" in err
     assert processes_of(work.out) == []
     # The fake writes in place, so the signal may have cut its last frame.
@@ -234,7 +235,7 @@ def test_an_interrupted_campaign_ends_its_processes_and_goes_on(work):
 
 
 def wait_for(is_time, seconds=60):
-    end = time.monotonic() + seconds
+    end = time.monotonic() + patience(seconds)
     while not is_time():
         assert time.monotonic() < end, "it never came"
         time.sleep(0.01)

@@ -9,6 +9,7 @@ import time
 import pytest
 
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.run.child import executable
 from rockbreak.run.ledger import read_ledger
 from rockbreak.run.run_directory import RunDirectory, attributes
@@ -24,7 +25,7 @@ def command(out, *arguments):
 
 
 def run(out, *arguments):
-    process = subprocess.run(command(out, *arguments), capture_output=True, text=True, check=False, timeout=300)
+    process = subprocess.run(command(out, *arguments), capture_output=True, text=True, check=False, timeout=patience(300))
     assert process.returncode == 0, process.stderr[-3000:]
     return RunDirectory(out)
 

@@ -12,6 +12,7 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.campaign.cases import explained
 from rockbreak.errors import RockbreakError
 from rockbreak.run.ledger import read_ledger
@@ -49,7 +50,7 @@ class Workplace:
 
     def run(self, *arguments):
         process = self.start(*arguments)
-        process.out, process.err = process.communicate(timeout=60)
+        process.out, process.err = process.communicate(timeout=patience(60))
         return process
 
     def calls(self):
@@ -262,7 +263,7 @@ def test_a_second_driver_is_refused_and_the_first_goes_on_undisturbed(work):
     wait_for(work.directory.split_file(0))
     second = work.run("--resume")
     assert second.returncode == 2 and "another pipeline/run" in second.err
-    _, err = first.communicate(timeout=60)
+    _, err = first.communicate(timeout=patience(60))
     assert first.returncode == 0, err
     assert len(work.events("frame")) == 40 and len(work.events("start")) == 1
 
@@ -315,7 +316,7 @@ def test_a_signal_ends_the_run_and_its_children(work, mode, signum, code):
     process = work.start("--mode", mode)
     wait_for(work.directory.split_file(1))
     process.send_signal(signum)
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=patience(30))
     assert process.returncode == code and "go on with --resume" in err
     assert processes_of(work.out) == []
     assert work.events("end")[-1]["code"] == code
@@ -337,7 +338,7 @@ def test_a_killed_driver_leaves_no_child_and_resumes_to_the_same_files(work):
 
 
 def wait_for(path, seconds=30):
-    end = time.monotonic() + seconds
+    end = time.monotonic() + patience(seconds)
     while not path.exists():
         assert time.monotonic() < end, f"{path} never came"
         time.sleep(0.01)

@@ -9,6 +9,7 @@ import time
 import pytest
 
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.lab import table as lab_table
 from rockbreak.errors import RockbreakError
 from rockbreak.lab.table import table_rows, text_table
@@ -30,7 +31,7 @@ def start(*arguments, **options):
 
 def run(*arguments, **options):
     process = start(*arguments, **options)
-    process.out, process.err = process.communicate(timeout=120)
+    process.out, process.err = process.communicate(timeout=patience(120))
     return process
 
 
@@ -152,12 +153,12 @@ def test_an_interruption_leaves_what_was_finished_with_its_table(tmp_path):
     write(tmp_path / "tests", "slow.yaml", BLOCK)
     out = tmp_path / "out"
     process = start(tmp_path / "tests", "--out", out, env={**os.environ, "ROCKBREAK_BIN": str(tmp_path / "bin")})
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + patience(60)
     while not (out / "fast" / "summary.json").exists() or '"slow", "state": "running"' not in read(out, process):
         assert time.monotonic() < deadline
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=patience(60))
     assert process.returncode == 130
     assert [row["status"] for row in rows_of(out)] == ["broken", "not run"]
     assert (out / "lab.html").exists()
@@ -166,7 +167,7 @@ def test_an_interruption_leaves_what_was_finished_with_its_table(tmp_path):
 def read(out, process):
     """What the driver said so far, without waiting for more."""
     os.set_blocking(process.stderr.fileno(), False)
-    said = getattr(process, "said", "") + (process.stderr.read() or "")
+    said = getattr(process, "said", "") + (process.stderr.buffer.read() or b"").decode()
     process.said = said
     return said
 

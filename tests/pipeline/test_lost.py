@@ -9,6 +9,7 @@ import synthetic
 from conftest import REPOSITORY
 from rockbreak.command_line import is_concluded
 from rockbreak.errors import IO_FAILURE, RockbreakError
+from rockbreak.run.child import binaries, executable
 from rockbreak.run.ledger import Ledger, read_ledger
 from rockbreak.run.run_directory import RunDirectory, is_valid, write_text
 from rockbreak.sealed import open_sealed
@@ -59,10 +60,10 @@ def test_a_call_that_fails_ends_the_run_with_the_name_of_its_file_and_nothing_ha
 
 def test_random_damage_is_refused_by_name_or_read_as_what_was_written(tmp_path):
     run = tmp_path / "run"
-    subprocess.run([REPOSITORY / "build" / "release" / "dem", "run",
+    subprocess.run([executable("dem"), "run",
                     REPOSITORY / "tests" / "robustness" / "golden" / "scene.yaml", "--out", run, "--until-frame", "0"],
                    check=True, capture_output=True)
-    found = subprocess.run([REPOSITORY / "build" / "release" / "tests" / "damage", run / "frames" / "000000.h5",
+    found = subprocess.run([binaries() / "tests" / "damage", run / "frames" / "000000.h5",
                             "--count", "400"], capture_output=True, text=True, check=False)
     assert found.returncode == 0 and "400 copies, 0 wrong" in found.stdout, found.stdout
 

@@ -10,6 +10,7 @@ import time
 import pytest
 
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.run.child import executable
 from rockbreak.errors import IO_FAILURE
 from rockbreak.run.run_directory import RunDirectory, is_valid
@@ -153,7 +154,7 @@ def test_a_directory_that_vanishes_ends_the_run_and_it_can_begin_anew(whole, tmp
         wait_for(process, RunDirectory(out).split_file(1))
         out.rename(tmp_path / "gone")
         shutil.rmtree(tmp_path / "gone", ignore_errors=True)
-        said = process.communicate(timeout=60)[1]
+        said = process.communicate(timeout=patience(60))[1]
     failed_rightly(process.returncode, said, "No such file or directory", out)
     assert processes_in(out) == []
     subprocess.run(run_command(out, resume=True), check=True, capture_output=True)
@@ -179,7 +180,7 @@ def test_a_signal_to_a_child_ends_the_run_and_it_goes_on(whole, tmp_path, name, 
     with subprocess.Popen(run_command(out), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) as process:
         wait_for(process, RunDirectory(out).split_file(1))
         os.kill(children(process.pid)[name], signum)
-        said = process.communicate(timeout=60)[1]
+        said = process.communicate(timeout=patience(60))[1]
     assert process.returncode == code, said
     assert_whole_files(out)
     subprocess.run(run_command(out, resume=True), check=True, capture_output=True)
@@ -198,7 +199,7 @@ def children(pid):
 
 
 def wait_for(process, path, seconds=60):
-    end = time.monotonic() + seconds
+    end = time.monotonic() + patience(seconds)
     while not path.exists():
         assert process.poll() is None and time.monotonic() < end, f"{path} never came"
         time.sleep(0.002)

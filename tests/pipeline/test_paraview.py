@@ -12,6 +12,7 @@ import yaml
 
 import fake_children
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.run import xdmf
 from rockbreak.run.run_directory import RunDirectory
 from rockbreak.run.xdmf import write_xdmf
@@ -26,7 +27,7 @@ READERS = ("XDMF Reader", "Xdmf3 Reader S", "Xdmf3 Reader T", "by itself")
 def paraview(file, cwd):
     """What ParaView sees, started elsewhere than in the run directory."""
     process = subprocess.run(["pvpython", HERE / "paraview_dump.py", file], cwd=cwd, capture_output=True, text=True,
-                             timeout=120)
+                             timeout=patience(120))
     assert process.returncode == 0, process.stderr
     return json.loads(process.stdout.splitlines()[-1])
 
@@ -169,7 +170,7 @@ def test_a_run_and_a_report_write_it_and_without_a_report_nobody_does(tmp_path):
     out = tmp_path / "run"
 
     def call(*command):
-        subprocess.run([REPOSITORY / "pipeline" / command[0], *command[1:]], check=True, capture_output=True, timeout=120,
+        subprocess.run([REPOSITORY / "pipeline" / command[0], *command[1:]], check=True, capture_output=True, timeout=patience(120),
                        env={**os.environ, "ROCKBREAK_BIN": str(tmp_path / "bin"), "FAKE_LOG": str(tmp_path / "log")})
 
     call("run", scene, "--out", out, "--no-report")

@@ -6,6 +6,7 @@ import subprocess
 import h5py
 
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.run.child import executable
 from rockbreak.run.ledger import read_ledger
 from rockbreak.run.run_directory import RunDirectory, refusals_in
@@ -21,7 +22,7 @@ def run(out, *overrides):
     words = [word for override in (*SCENE, *overrides) for word in ("--set", override)]
     return subprocess.run([REPOSITORY / "pipeline" / "run", REPOSITORY / "tests/robustness/scenes/slivers.yaml", "--out",
                            out, "--no-report", "--resume", *words],
-                          capture_output=True, text=True, check=False, timeout=300)
+                          capture_output=True, text=True, check=False, timeout=patience(300))
 
 
 def test_a_refused_particle_stops_the_coupled_run_until_told_otherwise(tmp_path):

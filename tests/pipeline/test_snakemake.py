@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from conftest import REPOSITORY
+from patience import patience
 from rockbreak.campaign.snakemake import planned_jobs
 from rockbreak.run.run_directory import attributes, is_valid
 from test_campaign import TWINS, Workplace, processes_of, wait_for
@@ -27,7 +28,7 @@ def work(tmp_path, monkeypatch):
 
 
 def snakemake(out, *arguments):
-    return subprocess.run(["snakemake", *arguments], cwd=out, capture_output=True, text=True, timeout=300, check=False)
+    return subprocess.run(["snakemake", *arguments], cwd=out, capture_output=True, text=True, timeout=patience(300), check=False)
 
 
 def write_rules(work, *arguments, **content):
@@ -127,7 +128,7 @@ def test_runs_through_snakemake_are_byte_for_byte_those_of_the_campaign(tmp_path
 
     def campaign(out, *arguments):
         process = subprocess.run([REPOSITORY / "pipeline" / "campaign", table, "--out", out, *arguments],
-                                 capture_output=True, text=True, check=False, timeout=300)
+                                 capture_output=True, text=True, check=False, timeout=patience(300))
         assert process.returncode == 0, process.stderr[-3000:]
 
     campaign(tmp_path / "local", "-j", "2")

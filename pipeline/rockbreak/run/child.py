@@ -14,10 +14,14 @@ from ..errors import BAD_INPUT, IO_FAILURE, RockbreakError
 REPOSITORY = Path(__file__).resolve().parents[3]
 
 
+def binaries():
+    """Folder of the build whose programs run: $ROCKBREAK_BIN if that is set, else build/release."""
+    return Path(os.environ.get("ROCKBREAK_BIN") or REPOSITORY / "build" / "release").resolve()
+
+
 def executable(name):
-    """Path of `dem` or `xfem`: in $ROCKBREAK_BIN if that is set, else in build/release."""
-    folder = Path(os.environ.get("ROCKBREAK_BIN") or REPOSITORY / "build" / "release").resolve()
-    path = folder / name
+    """Path of `dem` or `xfem`."""
+    path = binaries() / name
     if not os.access(path, os.X_OK):
         raise RockbreakError(BAD_INPUT, f"{path}: no such executable; build it with pipeline/setup")
     return str(path)

@@ -9,6 +9,7 @@ from pathlib import Path
 from . import FOLDER, PARTS, REPOSITORY
 
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
+sys.path.insert(0, str(REPOSITORY / "tests"))
 
 from . import table  # noqa: E402
 from .case_file import CaseError, read_cases  # noqa: E402

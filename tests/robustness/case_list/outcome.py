@@ -6,13 +6,12 @@ import subprocess
 import sys
 from dataclasses import dataclass, field
 
-from rockbreak.run.child import executable
+from patience import patience
+from rockbreak.run.child import binaries, executable
 
 from . import REPOSITORY
 from .case_file import one_line
 from .numbers import NoNumber, value_of
-
-TESTS = REPOSITORY / "build" / "release" / "tests"
 
 
 @dataclass
@@ -112,8 +111,8 @@ def program(word):
 
 
 def call(words, timeout):
-    return subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, errors="replace", timeout=timeout,
-                          check=False, stdin=subprocess.DEVNULL)
+    return subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, errors="replace",
+                          timeout=patience(timeout), check=False, stdin=subprocess.DEVNULL)
 
 
 def run_tests(case, outcome):
@@ -129,9 +128,9 @@ def run_tests(case, outcome):
 
 def run_catch(runner, name, timeout):
     """Why a Catch2 test is not passed, or None."""
-    path = TESTS / runner
+    path = binaries() / "tests" / runner
     if not path.exists():
-        return f"build/release/tests/{runner} is not built"
+        return f"{path} is not built"
     # A pattern that no test has exits 0, too; and these characters have a meaning in patterns.
     pattern = re.sub(r'([,\[\]\\"*~])', r"\\\1", name)
     listed = call([str(path), "--list-test-names-only", pattern], timeout).stdout.splitlines()

@@ -9,7 +9,7 @@ import subprocess
 from collections import Counter
 from pathlib import Path
 
-from lost_runs import HERE, REPOSITORY, RunDirectory, command, differences, immutable_files, results
+from lost_runs import HERE, REPOSITORY, RunDirectory, command, differences, immutable_files, patience, results
 from rockbreak.run.child import executable
 from rockbreak.run.run_directory import attributes, is_valid
 
@@ -98,7 +98,7 @@ class Bench:
         name = f"{file.parent.name}/{file.name}"
         what = f"{program}, {name}, {kind}"
         try:
-            ended = subprocess.run(words, cwd=cwd, capture_output=True, text=True, errors="replace", timeout=PATIENCE,
+            ended = subprocess.run(words, cwd=cwd, capture_output=True, text=True, errors="replace", timeout=patience(PATIENCE),
                                    stdin=subprocess.DEVNULL, check=False)
         except subprocess.TimeoutExpired:
             self.wrong(what, "hangs")

@@ -13,8 +13,8 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from lost_runs import (HERE, REPOSITORY, Started, command, differences, immutable_files, processes_in, results,
-                       seconds_until_free, temporary_files)
+from lost_runs import (HERE, REPOSITORY, Started, command, differences, immutable_files, patience, processes_in,
+                       results, seconds_until_free, temporary_files)
 from rockbreak.run.run_directory import is_valid
 
 SCENE = HERE.parent / "golden" / "scene.yaml"  # the smallest
@@ -64,7 +64,7 @@ class Sweep:
                        **({"FAULT_STAYS": "1"} if stays else {})}
         run = self.start(self.out, False, mode, environment)
         try:
-            ended = run.process.wait(120)
+            ended = run.process.wait(patience(120))
         except subprocess.TimeoutExpired:
             os.killpg(run.pid, 9)
             self.wrong(f"{name} {kind} {n}", "hangs")

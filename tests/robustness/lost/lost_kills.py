@@ -13,8 +13,8 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from lost_runs import (REPOSITORY, RunDirectory, Started, command, differences, immutable_files, phase_of,
-                       processes_in, results, seconds_until_free, step_of_newest_checkpoint, temporary_files)
+from lost_runs import (REPOSITORY, RunDirectory, Started, command, differences, immutable_files, patience,
+                       phase_of, processes_in, results, seconds_until_free, step_of_newest_checkpoint, temporary_files)
 
 VICTIMS = ("dem", "xfem", "driver", "group")
 START_SECONDS = 1.0        # in which every fourth kill falls
@@ -68,7 +68,7 @@ class Campaign:
     def after_kill(self, run, before, signum):
         """Nobody is left, nothing is gone, nothing has changed."""
         try:
-            code = run.process.wait(PATIENCE)
+            code = run.process.wait(patience(PATIENCE))
         except Exception:
             self.wrong("the driver goes on without its child")
             os.killpg(run.pid, signal.SIGKILL)

@@ -13,6 +13,8 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 SCENE = HERE / "scene.yaml"
 sys.path.insert(0, str(REPOSITORY / "pipeline"))
+sys.path.insert(0, str(REPOSITORY / "tests"))
+from patience import patience  # noqa: E402
 from rockbreak.run.run_directory import RunDirectory, attributes  # noqa: E402
 
 WITH_TIMES = ("wall_seconds", "cpu_seconds", "coupling_overhead")  # of summary.json
@@ -56,10 +58,10 @@ class Started:
         return None
 
 
-def seconds_until_free(out, patience=30.0):
+def seconds_until_free(out, longest=30.0):
     """How long until no process holds the directory: the driver, and every heir of its lock. None: never."""
     begin = time.monotonic()
-    while time.monotonic() - begin < patience:
+    while time.monotonic() - begin < patience(longest):
         if not (out / ".lock").exists():
             return 0.0
         with open(out / ".lock", encoding="utf-8") as lock:
