@@ -16,7 +16,8 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "
 INK, SOFT, GREY, LIGHT = "#1f2933", "#52606d", "#7b8794", "#e4e7eb"
 CLASS_COLORS = ("#c3ccd5", "#e69f00", "#5d1451")  # low, medium and high; weak, moderate and strong: ever darker
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
-GENERATION_COLORS = ("#e3e7eb", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154")  # viridis from the first breakage on
+# Unbroken; from the first breakage on viridis.
+GENERATION_COLORS = ("#e3e7eb", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154")
 MARKERS = "oDs^vP"
 LINES = ("-", "--", "-.", (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), "-")
 

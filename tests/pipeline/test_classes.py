@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 import synthetic
-from rockbreak.measures.classes import (STRESS_LIMITS, force_classes, held_stresses, large_displacements, particle_stresses,
-                               read_contact_state, stress_classes, two_contacts)
+from rockbreak.measures.classes import (STRESS_LIMITS, force_classes, held_stresses, large_displacements,
+                                        particle_stresses, read_contact_state, stress_classes, two_contacts)
 
 
 def test_forces_at_a_threshold_are_moderate_and_unloaded_contacts_do_not_count():

@@ -4,8 +4,10 @@ import pytest
 
 import synthetic
 from rockbreak.paper import numbers as paper
-from rockbreak.paper.evidence import Between, ByBreakage, Same, Samples, WithPressure, Within, finding, judged, slope
+from rockbreak.paper.differences import judged, slope, sure
+from rockbreak.paper.evidence import Between, Beyond, ByBreakage, Same, Samples, Widens, WithPressure, Within
 from rockbreak.paper.observations import WORDS, observe, outside_over_inside
+from rockbreak.paper.readings import finding, other_readings
 from rockbreak.paper.sentences_pressure import SENTENCES
 from rockbreak.paper.verdicts import NOT_REPRODUCED, REPRODUCED, UNDECIDABLE, WITHIN_SCATTER
 from rockbreak.run.results import Results
@@ -15,7 +17,8 @@ KEY = ("contacts", "peak")
 
 
 @pytest.mark.parametrize("differences, sign, expected", [
-    ([-3.0, -1.0, -2.0], -1, REPRODUCED),          # mean -2, standard error 0.58
+    ([-3.0, -2.0, -2.5], -1, REPRODUCED),          # mean -2.5, standard error 0.29
+    ([-3.0, -1.0, -2.0], -1, WITHIN_SCATTER),      # mean -2, standard error 0.58: 3.5, but of three seeds
     ([-3.0, -1.0, -2.0], 1, NOT_REPRODUCED),
     ([-4.0, 2.0, -1.0], -1, WITHIN_SCATTER),       # mean -1, standard error 1.73
     ([-4.0, 2.0, -1.0], 1, NOT_REPRODUCED),
@@ -23,8 +26,25 @@ KEY = ("contacts", "peak")
     ([0.0, 0.0], 1, NOT_REPRODUCED),
     ([2.0, 2.0], 1, REPRODUCED),
 ])
-def test_a_difference_counts_from_two_standard_errors_on(differences, sign, expected):
+def test_a_difference_counts_beyond_the_scatter_of_its_seeds(differences, sign, expected):
     assert judged(differences, sign)[0] == expected
+
+
+@pytest.mark.parametrize("seeds", [2, 3, 5, 11, 12, 20, 100])
+def test_beyond_the_scatter_is_students_97_5_percent(seeds):
+    """The area of Student's density from 0 to the limit is 0.475, by Simpson's rule in x = tan(angle)."""
+    freedom, angle = seeds - 1, np.linspace(0, np.pi / 2, 20001)[:-1]
+
+    def density(angle):  # (1 + x^2 / freedom)^(-(freedom + 1) / 2) dx
+        return (1 + np.tan(angle) ** 2 / freedom) ** (-(freedom + 1) / 2) / np.cos(angle) ** 2
+
+    def area(upper):
+        nodes = np.linspace(0, upper, 2001)
+        weights = np.tile([2.0, 4.0], 1001)[:2001]
+        weights[[0, -1]] = 1
+        return np.dot(weights, density(nodes)) * upper / 6000
+
+    assert 0.5 * area(np.arctan(sure(seeds))) / area(angle[-1]) == pytest.approx(0.475, abs=3e-4)
 
 
 def test_pairs_are_those_of_one_seed():
@@ -32,7 +52,7 @@ def test_pairs_are_those_of_one_seed():
     samples = Samples({(2e6, False): {1: {KEY: 100.0}, 2: {KEY: 200.0}, 3: {KEY: 999.0}},
                        (2e6, True): {1: {KEY: 110.0}, 2: {KEY: 211.0}, 4: {KEY: 0.0}}})
     assert samples.paired(KEY, 2e6) == {1: 10.0, 2: 11.0}
-    assert finding((ByBreakage(*KEY, 1, (2e6,)),), samples)[1] == REPRODUCED
+    assert finding((ByBreakage(*KEY, 1, (2e6,)),), samples)[1] == REPRODUCED  # 10.5 +- 0.5, two seeds: 21 of 12.7
     assert finding((ByBreakage(*KEY, -1),), samples)[1] == NOT_REPRODUCED
 
 
@@ -55,9 +75,62 @@ def test_stages_levels_and_sameness():
     assert finding((Between("a", ("start", "peak"), 0),), samples)[1] == NOT_REPRODUCED
     assert finding((Within("a", "peak", 0.2, 0.25),), samples)[1:] == (REPRODUCED, "in 0.2 to 0.25")
     assert finding((Within("a", "peak", 0.2, 0.24),), samples)[1] == NOT_REPRODUCED
-    assert finding((Same("a", "peak"),), samples)[1] == NOT_REPRODUCED  # 0.215 and 0.245: 13 %
-    assert finding((Same("a", "start"), Between("a", ("start", "peak"), -1)), samples)[1] == NOT_REPRODUCED
+    assert finding((Same("a", "peak", 0.02),), samples)[1:] == (NOT_REPRODUCED, "beyond 0.02 at 2 MPa")
+    assert finding((Same("a", "peak", 0.0301),), samples)[1] == REPRODUCED
+    assert finding((Same("a", "start", 0.02), Between("a", ("start", "peak"), -1)), samples)[1] == NOT_REPRODUCED
     assert finding((Between("a", ("peak", "end"), 1),), samples)[1] == UNDECIDABLE
+
+
+def at_four_pressures(changes, noise=0.0):
+    """Samples of which breakage changes KEY by `changes`, one for each pressure; in one seed of three by `noise` more
+    at every other pressure and less at the rest, in another the other way round."""
+    return Samples({(p, broken): {seed: {KEY: 100.0 * seed + broken * (change + noise * (seed - 2) * (-1) ** k)}
+                                  for seed in (1, 2, 3)} for k, (p, change) in enumerate(zip(paper.PRESSURES, changes))
+                    for broken in (False, True)})
+
+
+def test_a_trend_that_is_not_monotone_says_so_and_is_none_if_the_contrary_step_is_beyond_the_scatter():
+    part = WithPressure(*KEY, -1, (None,))
+    assert finding((part,), at_four_pressures((0, -1, -2, -3)))[1:] == (REPRODUCED, "all seeds alike")
+    _, kind, reason = finding((part,), at_four_pressures((0, -3, -2, -3)))
+    assert kind == NOT_REPRODUCED and "not monotone: 1 MPa to 2 MPa the other way, all seeds alike" in reason
+    _, kind, reason = finding((part,), at_four_pressures((0, -8, -7.9, -20), noise=0.2))
+    assert kind == REPRODUCED and "not monotone: 1 MPa to 2 MPa the other way, " in reason
+
+
+def test_a_number_beyond_a_limit_is_judged_with_its_scatter():
+    def ratios(*values):
+        return Samples({(2e6, True): {seed: {("outer_over_inner", "end"): value} for seed, value in enumerate(values)}})
+    part = Beyond("outer_over_inner", "end", 1, 1.0, (True,))
+    assert finding((part,), ratios(1.3, 1.2, 1.25, 1.2))[1] == REPRODUCED
+    assert finding((part,), ratios(1.0, 1.24, 1.02, 1.07))[1] == WITHIN_SCATTER
+    assert finding((part,), ratios(0.9, 1.0, 0.95))[1] == NOT_REPRODUCED
+
+
+def test_what_breakage_changes_widens_from_a_stage_to_a_later_one():
+    samples = Samples({(2e6, broken): {seed: {("a", "7 %"): 0.2 + 0.1 * seed - 0.01 * broken,
+                                              ("a", "end"): 0.3 + 0.1 * seed - (0.05 + 0.001 * seed) * broken}
+                                       for seed in (1, 2, 3)} for broken in (False, True)})
+    assert finding((Widens("a", ("7 %", "end"), -1),), samples)[1] == REPRODUCED
+    assert finding((Widens("a", ("7 %", "end"), 1),), samples)[1] == NOT_REPRODUCED
+    assert finding((Widens("a", ("7 %", "10 %"), 1),), samples)[1] == UNDECIDABLE
+
+
+def test_a_reading_at_the_other_stage_or_of_the_other_stress_is_named_where_its_verdict_differs():
+    def run(broken, seed):
+        return {("a", "10 %"): 0.3 - 0.05 * broken, ("a", "peak"): 0.3 + 0.01 * broken,
+                ("a_n", "10 %"): 0.5 - 0.1 * broken, ("a_n", "peak"): 0.6 - 0.1 * broken,
+                ("a_t", "10 %"): 0.2 - 0.1 * broken,
+                ("high_vertical_stresses", "10 %"): 50 + 9 * broken,
+                ("high_vertical_stresses_held", "10 %"): 50 - 9 * broken}
+    samples = Samples({(2e6, broken): {seed: run(broken, seed) for seed in (1, 2)} for broken in (False, True)})
+    assert other_readings((ByBreakage("a", "10 %", -1),), samples) == [
+        ("at the peak", NOT_REPRODUCED, "the other sign")]
+    assert other_readings((ByBreakage("a", "peak", -1),), samples) == [("at 10 %", REPRODUCED, "all seeds alike")]
+    assert other_readings((ByBreakage("a_n", "10 %", -1),), samples) == []  # the same verdict
+    assert other_readings((ByBreakage("a_t", "10 %", -1),), samples) == []  # not measured at the peak
+    assert other_readings((ByBreakage("high_vertical_stresses", "10 %", -1),), samples)[0][:2] == (
+        "stresses with two contacts held", REPRODUCED)
 
 
 def published():

@@ -1,5 +1,5 @@
-"""Pictures of assemblies side by side: displacements, force chains and particle stresses in classes (Figs. 3 to 6 against
-strain, Figs. 14 to 16 against pressure). A row for each condition, on one scale; of several seeds the lowest is shown."""
+"""Pictures of assemblies side by side: displacements, force chains and particle stresses in classes (Figs. 3 to 6
+against strain, Figs. 14 to 16 against pressure). A row for each condition, on one scale; of several seeds the lowest."""
 import matplotlib
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -185,7 +185,7 @@ def grid(panels, draw):
 
 
 def add_particles(axes, s, kind, colors):
-    """Outlines filled with the colour of their kind, 0, 1, ... (add_patch would walk along every path for its limits)"""
+    """Outlines filled with the colour of their kind, 0, 1, ... (add_patch would walk along each path for its limits)"""
     outlines = s.outlines
     for level in np.unique(kind):
         axes.add_artist(PathPatch(joined([outlines[i] for i in np.flatnonzero(kind == level)], closed=True),

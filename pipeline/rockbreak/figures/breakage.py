@@ -25,7 +25,8 @@ def gradations(selection):
     if len(selection.conditions) == 1:
         run = selection.conditions[0].first
         strains = frames.shown_strains([run])
-        shown = [(f"{frames.percent(strain)} strain", run, frames.frame_at(run, strain), {"color": color, "linestyle": line})
+        shown = [(f"{frames.percent(strain)} strain", run, frames.frame_at(run, strain),
+                  {"color": color, "linestyle": line})
                  for strain, color, line in zip(strains, sequence(len(strains)), LINES)]
     else:
         shown = [(one.label, one.first, one.first.stage_frame("end"), one.line) for one in selection.breakable]
@@ -47,7 +48,7 @@ def gradations(selection):
 
 @lru_cache(maxsize=256)
 def breakage_table(run):
-    """Axial strain, Marsal's and Hardin's indices, and the share of mass in fragments, at up to INDEXED_FRAMES frames."""
+    """Axial strain, Marsal's and Hardin's indices, share of mass in fragments, at up to INDEXED_FRAMES frames."""
     limit = smallest_piece(run.case) if "minimum_area" in (run.case.get("breakage") or {}) else None
     before = frame_gradation(frames.frame_of(run, run.frames[0]["frame"]))
     sieves = standard_sieves(limit or before.size[0] / 3, before.size[-1])

@@ -11,8 +11,8 @@ from .drawn import Drawn
 
 RUN, PRESSURES = "one run", "pressures"  # what a figure needs at least
 
-SECTIONS = (("response", "Response of the assembly"), ("micro", "Particles and forces"), ("fabric", "Fabric and strength"),
-            ("pressure", "Effect of the confining pressure"), ("breakage", "Breakage"), ("energy", "Energy"),
+SECTIONS = (("response", "Response of the assembly"), ("micro", "Particles and forces"),
+            ("fabric", "Fabric and strength"), ("pressure", "Effect of the confining pressure"), ("breakage", "Breakage"), ("energy", "Energy"),
             ("checks", "Checks"))
 
 
@@ -50,6 +50,7 @@ FITTED = "Limits of the classes: those that fit the paper's counts best, which s
 STRESS = ("Mean stress of each particle from its contact forces (its virial, equal to the average over the finite "
           f"elements where the forces balance), compression positive. {CLASSES_NOTE} {FITTED}")
 
+LOWEST = "Of several seeds the lowest."
 BESIDE = "Marks, for the paper's assembly at 2 MPa: its Table 2."
 
 CATALOGUE = (
@@ -61,8 +62,9 @@ CATALOGUE = (
           "Of the boundary's deformation; compression positive, so that a falling curve is dilation.",
           curves.volumetric_strain),
     Entry("void_ratio", None, "response", "Void ratio",
-          "e1: ring polygon over the solids inside it; e2: the same with overlaps subtracted; e4: ring polygon over the "
-          "particles that are not on the boundary. A comparison shows the definition of its scenes.", curves.void_ratio),
+          "e1: ring polygon over the solids inside it; e2: the same with overlaps subtracted; e4: ring polygon over "
+          "the particles that are not on the boundary; each less 1. A comparison shows the definition of its scenes.",
+          curves.void_ratio),
     Entry("particles", None, "response", "Number of particles",
           f"Each breakage makes two particles of one. {BESIDE}", curves.particles),
     Entry("contacts", None, "response", "Number of contacts", f"Contacts in force. {BESIDE}",
@@ -72,14 +74,15 @@ CATALOGUE = (
           "Length of each particle's displacement since the start of shear, on one scale; particles that have come out "
           "of breakage are black.", pictures(assemblies.displacements)),
     Entry("force_chains", "4", "micro", "Normal force chains",
-          "A line joins the centroids of two particles over their contact point; colour and width tell the class of the "
-          f"normal force. Boundary particles are darker. {CLASSES_NOTE} {FITTED}", pictures(assemblies.force_chains)),
+          "A line joins the centroids of two particles over their contact point; colour and width tell the class of "
+          f"the normal force. Boundary particles are darker. {CLASSES_NOTE} {FITTED}", pictures(assemblies.force_chains)),
     Entry("vertical_stresses", "5", "micro", "Vertical particle stresses", STRESS,
           pictures(assemblies.vertical_stresses)),
     Entry("horizontal_stresses", "6", "micro", "Horizontal particle stresses", STRESS,
           pictures(assemblies.horizontal_stresses)),
     Entry("force_pdf", "7", "micro", "Probability density of normal forces",
-          "Of all contacts that carry force, in 30 equal bins; logarithmic density.", forces.force_pdf),
+          "Of all contacts that carry force, in 30 equal bins up to the force that 1 in 2000 of those shown exceeds; "
+          "logarithmic density.", forces.force_pdf),
 
     Entry("contact_orientation", "9", "fabric", "Contact orientations",
           "Bars: contacts whose normal lies in each 10°, both directions of a normal counted. Line: the fit of Eq. 7.",
@@ -93,8 +96,8 @@ CATALOGUE = (
     Entry("anisotropies", "12", "fabric", "Anisotropies",
           "a, a_n and a_t of second-order Fourier fits (Eqs. 7 to 9), and their sum.", strength.anisotropies),
     Entry("stress_and_fabric", "13", "fabric", "Stress and fabric",
-          "sin φ from the mean stresses (Eq. 12, running mean over 0.2 %), and from the anisotropies by Eq. 10 and by its "
-          "simplified form, Eq. 11.", strength.stress_and_fabric),
+          "sin φ from the mean stresses (Eq. 12, running mean over 0.2 %), and from the anisotropies by Eq. 10 and by "
+          "its simplified form, Eq. 11.", strength.stress_and_fabric),
 
     Entry("displacements_by_pressure", "14", "pressure", "Displacements at the end",
           "As in the figure against strain, at the end of each test, on one scale.",
@@ -124,23 +127,25 @@ CATALOGUE = (
           "(Eq. 10).", strength.peak_friction, PRESSURES),
 
     Entry("gradations", None, "breakage", "Gradation",
-          "Share by mass of the particles up to each equivalent diameter.", breakage.gradations),
+          f"Share by mass of the particles up to each equivalent diameter. {LOWEST}", breakage.gradations),
     Entry("breakage_against_strain", None, "breakage", "Breakage against strain",
           "Mass of all particles that have come out of breakage; Marsal's index of the gradation before and after, on "
-          "sieves a factor of 2^(1/4) apart; Hardin's relative breakage, 1 where all is broken down to the smallest piece "
-          "that the scene allows.", breakage.breakage_against_strain),
+          "sieves a factor of 2^(1/4) apart; Hardin's relative breakage, 1 where all is broken down to the smallest "
+          "piece that the scene allows.", breakage.breakage_against_strain),
     Entry("breakage_by_pressure", None, "breakage", "Breakage against pressure",
           "At the end of each test; a mark for each run, lines through the means.", breakage.breakage_by_pressure,
           PRESSURES),
     Entry("fragments_by_generation", None, "breakage", "Fragments by generation",
-          "At the end: the mass of particles that never broke and of fragments by the number of breakages behind them.",
+          "At the end: the mass of particles that never broke and of fragments by the number of breakages behind them. "
+          f"{LOWEST}",
           breakage.fragments_by_generation),
     Entry("crack_rose", None, "breakage", "Directions of breakage lines",
           "Lines along which particles broke, all breakages of the test, as share in each 10° (90° is the loading "
           "axis), by the mode in which the crack began.", cracks.crack_rose),
 
     Entry("energy", None, "energy", "Energy by kind",
-          "Work done on the assembly since the start of shear and where it went; the residual is a check.", energy.energy),
+          "Work done on the assembly since the start of shear and where it went; the residual is a check.",
+          energy.energy),
     Entry("energy_shares", None, "energy", "Where the work went",
           "Shares at the end of each test, means over the seeds.", energy.energy_shares),
 

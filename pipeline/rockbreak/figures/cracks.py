@@ -50,7 +50,7 @@ def crack_rose(selection):
         axes.set_title(f"{condition.label}\n" * (len(shown) > 1) + f"{len(direction)} breakages", pad=8)
     for axes in grid[len(shown):]:
         axes.set_visible(False)
-    ticks = [tick for tick in (2, 5, 10, 15, 20, 30, 50) if tick <= top][-2:]
+    ticks = [tick for tick in (1, 2, 5, 10, 20, 50) if tick <= top][-2:]
     for axes in grid:
         axes.set_ylim(0, 1.05 * top)
         axes.set_rticks(ticks, [f"{tick} %" for tick in ticks], fontsize=7.5, color=SOFT)

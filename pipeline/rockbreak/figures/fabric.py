@@ -2,6 +2,7 @@
 with the fits of Eqs. 7 to 9. Of several seeds, histogram and fit are the means."""
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from . import frames
@@ -47,7 +48,8 @@ def at_peak(selection):
 def contact_orientation(roses):
     """Numbers of contacts; a contact counts in both its directions."""
     return polar_grid(roses, "contacts", lambda one: one.contacts.astype(float),
-                      lambda fit, one, theta: one.contacts.sum() / BINS * 2 * np.pi * fit.orientation(theta), "a", "{:g}")
+                      lambda fit, one, theta: one.contacts.sum() / BINS * 2 * np.pi * fit.orientation(theta), "a",
+                      "{:g}")
 
 
 def normal_forces(roses):
@@ -96,7 +98,8 @@ def polar_grid(roses, name, bars_of, fit_of, anisotropy, unit, scale=1.0):
     ticks = [tick for tick in MaxNLocator(3).tick_values(0, top) if 0 < tick <= top * 1.02]
     for panel in grid.ravel():
         panel.set(ylim=(0, 1.05 * top or 1.0))
-        panel.set_rticks(ticks, [unit.format(tick) for tick in ticks], fontsize=7.5, color=SOFT)
+        panel.set_rticks(ticks, [unit.format(tick) for tick in ticks], fontsize=7.5, color=SOFT,
+                         path_effects=[withStroke(linewidth=2.5, foreground="white")])  # they stand on the bars
         panel.set_rlabel_position(22)
         panel.set_xticks(np.radians([0, 45, 90, 135, 180, 225, 270, 315]),
                          ["0°", "", "90°", "", "", "", "", ""], fontsize=7.5, color=GREY)

@@ -1,4 +1,4 @@
-"""Anisotropies and the friction that follows from them, against strain and against pressure (Figs. 12, 13, 20 to 22)."""
+"""Anisotropies and the friction that follows from them, against strain and pressure (Figs. 12, 13, 20 to 22)."""
 from functools import lru_cache
 
 import numpy as np
@@ -179,8 +179,8 @@ def peak_friction(selection):
             x = np.array([1e-6 * one.pressure for one, _ in points])
             mean = np.array([values.mean() for _, values in points])
             spread = np.array([values.std(ddof=1) if len(values) > 1 else np.nan for _, values in points])
-            axes.errorbar(x, mean, np.nan_to_num(spread) if selection.has_seeds else None, color=KIND_COLORS[kind], linestyle=line,
-                          marker=KIND_MARKERS[kind], markersize=5.5, capsize=3, linewidth=1.3,
+            axes.errorbar(x, mean, np.nan_to_num(spread) if selection.has_seeds else None, color=KIND_COLORS[kind],
+                          linestyle=line, marker=KIND_MARKERS[kind], markersize=5.5, capsize=3, linewidth=1.3,
                           markerfacecolor="white" if hollow else KIND_COLORS[kind], label=f"{KINDS[kind]}, {label}")
             data.add(kind=KINDS[kind], source=label, pressure_Pa=1e6 * x, peak_friction_angle_degrees=mean,
                      deviation=spread, runs=[len(values) for _, values in points])

@@ -16,7 +16,7 @@ from .energy import Energies, energies
 from .fabric import (Anisotropies, PolarHistogram, fit_anisotropies, frame_anisotropies, polar_histogram,
                      sin_phi_of_stress)
 from .forces import (ForceDistribution, StrongShare, Uniformity, deviator_by_force, exponential_tail,
-                     force_distribution, power_of_weak, strong_share, uniformity)
+                     force_distribution, power_of_weak, strong_share, tail_variation, uniformity)
 from .frame import Frame, Split, read_frame, read_split
 from .gradation import (FractalFit, Gradation, einav, equivalent_diameter, fractal_dimension,
                         fractal_dimension_by_mass, frame_gradation, gradation, hardin, longest_diameter, marsal,

@@ -63,6 +63,18 @@ def exponential_tail(normal_force, start=1.0):
     return float(beta), float(beta / np.sqrt(len(tail)))
 
 
+def tail_variation(normal_force, start=1.0):
+    """Standard deviation over mean of x - `start`, of the forces above x = `start`; nan without forces there.
+
+    1 for an exponential tail, whatever its exponent; 0.76 for half a normal distribution, above 1 for a power law. Its
+    standard error is about 1 / sqrt(forces there).
+    """
+    f = normal_force[normal_force > 0]
+    excess = f / f.mean() - start if len(f) else f
+    excess = excess[excess > 0]
+    return float(excess.std() / excess.mean()) if len(excess) else np.nan
+
+
 def power_of_weak(normal_force, end=1.0):
     """(alpha, standard error) of P(x) ~ x^alpha below x = `end`; (nan, nan) without forces there.
 

@@ -4,25 +4,24 @@ One seed makes one sample at each pressure, which is sheared with and without br
 twins, two stages or two pressures is taken seed by seed, so that what one sample has more than another drops out. With
 the mean of d and its standard error s.e. = s / sqrt(n) over n seeds, a trend is
 
-  reproduced          mean(d) has the stated sign and is at least 2 s.e.
-  within the scatter  the stated sign, less than 2 s.e.
+  reproduced          mean(d) has the stated sign and is at least `sure(n)` s.e. (2.8 with five seeds, differences.py)
+  within the scatter  the stated sign, less than that
   not reproduced      the other sign, or no difference at all
 
 Several differences in one sentence: not reproduced if one is not; else within the scatter if one is. A trend with
-pressure is the slope against log2 p, by least squares through a seed's pressures: a change for each doubling. One seed
-alone has no scatter: the sign decides, and the reason says so.
+pressure is the slope against log2 p, by least squares through a seed's pressures: a change for each doubling. Where a
+step between two pressures goes the other way, the reason says so; if that step is beyond the scatter, the trend is not
+reproduced. One seed alone has no scatter: the sign decides, and the reason says so.
 """
 from dataclasses import dataclass
-from statistics import mean, stdev
+from statistics import mean
 from typing import NamedTuple
 
-import numpy as np
-
+from .differences import contrary_steps, form, judged, slope, with_error
 from .observations import WORDS
-from .verdicts import NOT_REPRODUCED, REPRODUCED, UNDECIDABLE, WITHIN_SCATTER
+from .verdicts import NOT_REPRODUCED, REPRODUCED, WITHIN_SCATTER
 
-SURE = 2.0              # standard errors
-NEARLY_CONSTANT = 0.10  # of the mean: our reading of "almost constant" and "nearly the same"
+NEARLY_CONSTANT = 0.10  # of the mean: our reading of "almost constant"
 ASSEMBLY = {False: "non-breakable", True: "breakable"}
 ORDER = (REPRODUCED, WITHIN_SCATTER, NOT_REPRODUCED)
 
@@ -50,42 +49,7 @@ class Piece(NamedTuple):
     text: str
     verdict: str
     reason: str
-
-
-def form(value):
-    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
-
-
-def signed(value):
-    return ("+" if value > 0 else "") + form(value)
-
-
-def error_of(values):
-    """Standard error of the mean; None of one value."""
-    return stdev(values) / len(values) ** 0.5 if len(values) > 1 else None
-
-
-def with_error(values):
-    error = error_of(values)
-    return signed(mean(values)) + ("" if error is None else f" ± {form(error)}")
-
-
-def judged(differences, sign):
-    """(verdict, reason) of differences that should have a sign (+1 or -1)."""
-    middle, error = mean(differences), error_of(differences)
-    if middle * sign <= 0:
-        return NOT_REPRODUCED, "no difference" if middle == 0 else "the other sign" if (
-            error is None or abs(middle) >= SURE * error) else f"the other sign, {abs(middle) / error:.1f} s.e."
-    if error is None:
-        return REPRODUCED, "one seed: the sign alone"
-    if middle * sign >= SURE * error:
-        return REPRODUCED, f"{abs(middle) / error:.1f} s.e." if error > 0 else "all seeds alike"
-    return WITHIN_SCATTER, f"{abs(middle) / error:.1f} s.e."
-
-
-def slope(by_pressure):
-    """Of one seed: least squares of pressure -> number against log2 of the pressure."""
-    return float(np.polyfit(np.log2(list(by_pressure)), list(by_pressure.values()), 1)[0])
+    note: str = ""  # said whatever decides the sentence
 
 
 def megapascal(pressure):
@@ -95,7 +59,7 @@ def megapascal(pressure):
 # What a sentence is made of. Each takes Samples and gives Pieces; none where the runs do not have the numbers.
 
 class ByBreakage(NamedTuple):
-    """Breakable less non-breakable has this sign: at each of the pressures told, or, told none, in the mean over all."""
+    """Breakable less non-breakable has this sign: at each of the pressures told; told none, in the mean over all."""
     quantity: str
     column: str
     sign: int
@@ -142,7 +106,15 @@ class WithPressure(NamedTuple):
             listed = ", ".join(f"{megapascal(p)} {form(value)}" for p, value in means.items())
             kind = "breakable − non-breakable" if breakable is None else ASSEMBLY[breakable]
             text = f"{said(key)}, {kind}: {listed}; for each doubling {with_error(slopes)}"
-            found.append(Piece(text, *(judged(slopes, self.sign) if self.sign else constant(list(means.values())))))
+            if not self.sign:
+                found.append(Piece(text, *constant(list(means.values()))))
+                continue
+            contrary = contrary_steps(rows, self.sign)
+            note = "; ".join(f"{megapascal(low)} to {megapascal(high)} the other way, {words}"
+                             for low, high, _, words in contrary)
+            against = any(beyond for _, _, beyond, _ in contrary)
+            found.append(Piece(text, *((NOT_REPRODUCED, "a step beyond the scatter") if against else
+                                       judged(slopes, self.sign)), f"not monotone: {note}" if note else ""))
         return found
 
 
@@ -194,17 +166,63 @@ class Within(NamedTuple):
 
 
 class Same(NamedTuple):
-    """Nearly the same with and without breakage, at each pressure."""
+    """With and without breakage the same to a tolerance, in the mean over the seeds, at each pressure."""
     quantity: str
     column: str
+    tolerance: float
 
     def pieces(self, samples):
-        key = self.quantity, self.column
-        rows = {p: (mean(samples.of(key, p, False).values()), mean(samples.of(key, p, True).values()))
-                for p in samples.pressures() if samples.paired(key, p)}
-        listed = ", ".join(f"{megapascal(p)} {form(solid)} / {form(broken)}" for p, (solid, broken) in rows.items())
-        return [Piece(f"{said(key)}, non-breakable / breakable: {listed}" if i == 0 else "", *constant(list(pair)))
-                for i, pair in enumerate(rows.values())]
+        key, found = (self.quantity, self.column), []
+        for pressure in samples.pressures():
+            paired = list(samples.paired(key, pressure).values())
+            if paired:
+                kind, reason = ((REPRODUCED, f"within {self.tolerance:g}") if abs(mean(paired)) <= self.tolerance else
+                                (NOT_REPRODUCED, f"beyond {self.tolerance:g} at {megapascal(pressure)}"))
+                found.append(Piece(f"{megapascal(pressure)} {with_error(paired)}", kind, reason))
+        if found:
+            found[0] = found[0]._replace(text=f"{said(key)}, breakable − non-breakable: {found[0].text}")
+        return found
+
+
+class Beyond(NamedTuple):
+    """More (sign +1) or less (-1) than a limit."""
+    quantity: str
+    column: str
+    sign: int
+    limit: float
+    assemblies: tuple = (False, True)
+    pressures: tuple = ()
+
+    def pieces(self, samples):
+        found = []
+        for breakable in self.assemblies:
+            for pressure in self.pressures or samples.pressures():
+                values = list(samples.of((self.quantity, self.column), pressure, breakable).values())
+                if values:
+                    error = with_error(values).partition("±")[2]
+                    text = (f"{said((self.quantity, self.column))}, {ASSEMBLY[breakable]}: {megapascal(pressure)} "
+                            f"{form(mean(values))}" + (f" ±{error}" if error else ""))
+                    found.append(Piece(text, *judged([value - self.limit for value in values], self.sign)))
+        return found
+
+
+class Widens(NamedTuple):
+    """What breakage changes (breakable less non-breakable) grows (+1) or falls (-1) from one stage to a later one."""
+    quantity: str
+    columns: tuple
+    sign: int
+    pressure: float = 2e6
+
+    def pieces(self, samples):
+        first, last = (samples.paired((self.quantity, column), self.pressure) for column in self.columns)
+        seeds = sorted(first.keys() & last.keys())
+        if not seeds:
+            return []
+        listed = ", ".join(f"{form(mean(row[seed] for seed in seeds))} at {column}"
+                           for column, row in zip(self.columns, (first, last)))
+        differences = [last[seed] - first[seed] for seed in seeds]
+        return [Piece(f"{said((self.quantity, None))}, breakable − non-breakable: {listed} ({with_error(differences)})",
+                      *judged(differences, self.sign))]
 
 
 def constant(values):
@@ -215,14 +233,6 @@ def constant(values):
 def said(key):
     quantity, column = key
     name = WORDS[quantity]
-    return name if column in (None, "test") else f"{name} at {'the ' if column in ('peak', 'end', 'start') else ''}{column}"
-
-
-def finding(parts, samples):
-    """(ours in words, verdict, reason) of the parts of one sentence."""
-    pieces = [piece for part in parts for piece in part.pieces(samples)]
-    if not pieces:
-        return "–", UNDECIDABLE, "our runs do not have it"
-    worst = max((piece.verdict for piece in pieces), key=ORDER.index)
-    reasons = [piece.reason for piece in pieces if piece.verdict == worst]
-    return "; ".join(piece.text for piece in pieces if piece.text), worst, ", ".join(dict.fromkeys(reasons))
+    if column in (None, "test") or name.endswith(f"at the {column}"):
+        return name
+    return f"{name} at {'the ' if column in ('peak', 'end', 'start') else ''}{column}"

@@ -8,7 +8,7 @@ import numpy as np
 from ..measures.breakage import read_breakages
 from ..measures.classes import read_contact_state
 from ..measures.displacements import frame_motion
-from ..measures.forces import exponential_tail, uniformity
+from ..measures.forces import tail_variation, uniformity
 from ..measures.frame import read_frame
 from ..measures.gradation import frame_gradation
 from .rows import LABELS
@@ -26,7 +26,9 @@ WORDS = LABELS | {
     "shear_over_normal": "mean shear / mean normal force", "gini": "Gini coefficient of normal forces",
     "top_tenth": "share that the strongest tenth of the contacts carries",
     "force_scatter": "standard deviation of normal forces [kN]",
-    "tail_exponent": "exponent β of the PDF above the mean force",
+    "tail_variation": "scatter over mean of what exceeds the mean force",
+    "share_below_mean": "share of the forces below their mean",
+    "force_at_fragments": "mean normal force at fragments / among unbroken particles",
     "uniformity_of_sizes": "coefficient of uniformity d60 / d10", "largest_displacement": "largest displacement [m]",
     "lateral_stretch": "lateral expansion of the assembly", "void_ratio": "void ratio e4",
     "void_ratio_rise": "rise of void ratio e4", "percentage_of_breakage": "new particles, % of 1194",
@@ -72,8 +74,8 @@ def frame_numbers(frame, fit):
     if fit is None:
         return {}
     vertical = np.abs(normal[:, 1]) > np.abs(normal[:, 0])
-    beta, _ = exponential_tail(force)
     shares = uniformity(force)
+    at_fragment = (frame.generation[frame.a[loaded]] > 0) | (frame.generation[frame.b[loaded]] > 0)
     motion = frame_motion(frame)
     place = frame.position - frame.displacement
     radius = np.linalg.norm(place - place.mean(axis=0), axis=1)
@@ -87,7 +89,10 @@ def frame_numbers(frame, fit):
         "diagonal_shear_force": 1e-3 * fit.mean_normal_force * fit.a_t,
         "vertical_contacts": vertical.sum(), "horizontal_contacts": (~vertical).sum(),
         "mean_force": 1e-3 * force.mean(), "shear_over_normal": shear.mean() / force.mean(),
-        "gini": shares.gini, "top_tenth": shares.top_tenth, "tail_exponent": beta,
+        "gini": shares.gini, "top_tenth": shares.top_tenth, "tail_variation": tail_variation(force),
+        "share_below_mean": 1 - shares.above_mean,
+        "force_at_fragments": (force[at_fragment].mean() / force[~at_fragment].mean()
+                               if 0 < at_fragment.sum() < len(force) else None),
         "force_scatter": 1e-3 * force.std(), "uniformity_of_sizes": frame_gradation(frame).uniformity,
         "largest_displacement": moved.max(),
         "outer_over_inner": moved[~inner].mean() / moved[inner].mean() if moved[inner].any() else None,
@@ -127,7 +132,7 @@ def of_the_test(results):
 
 
 def equations_10_11(results):
-    """Mean of |Eq. 10 - Eq. 12| and mean of Eq. 11 - Eq. 12 over the test, in frames 0.5 % of strain apart; {} without any."""
+    """Mean of |Eq. 10 - Eq. 12| and of Eq. 11 - Eq. 12 over the test, in frames FABRIC_SPACING apart; {} without any."""
     rows = shear_rows(results.history)
     if not len(rows["axial_strain"]):
         return {}

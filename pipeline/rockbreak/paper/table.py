@@ -12,11 +12,12 @@ from typing import Optional
 
 from . import numbers as paper
 from ..measures.classes import HELD
+from .causes import cause_of
 from .class_limits import limits_table
 from .rows import LABELS, paper_rows
-from .causes import cause_of
-from .evidence import ASSEMBLY, Samples, finding
+from .evidence import ASSEMBLY, Samples
 from .observations import observe
+from .readings import finding, other_readings
 from .sentences_pressure import SENTENCES
 from .verdicts import NOT_REPRODUCED, REPRODUCED, TOLERANCES_IN_WORDS, UNDECIDABLE, WITHIN_SCATTER, verdict
 from ..report.page import render
@@ -25,6 +26,7 @@ from ..run.run_directory import RunDirectory, write_text
 
 # What may differ between the runs of one group: the seed, and what follows from where a run was made.
 FREE_KEYS = ("seed", "output.", "preparation.from")
+KINDS = (REPRODUCED, WITHIN_SCATTER, NOT_REPRODUCED, UNDECIDABLE)
 LATERAL_STRESS_ERROR = 0.05  # rms; a run beyond it is no test at its pressure
 
 
@@ -56,6 +58,7 @@ class Found:
     ours: str
     verdict: str
     reason: str
+    others: str = ""  # readings that give another verdict
 
 
 def depends_on_limits(quantity):
@@ -102,12 +105,13 @@ def write(directories, out):
     out.mkdir(parents=True, exist_ok=True)
     page = {
         "groups": groups, "left_out": left_out, "adrift": adrift, "limits": limits_table(runs),
-        "sentences": sentences, "tally_of_sentences": [(kind, sum(one.verdict == kind for one in sentences)) for kind in (
-            REPRODUCED, WITHIN_SCATTER, NOT_REPRODUCED, UNDECIDABLE)],
+        "sentences": sentences,
+        "tally_of_sentences": [(kind, sum(one.verdict == kind for one in sentences)) for kind in KINDS],
+        "by_reading": sum(one.verdict == REPRODUCED and bool(one.others) for one in sentences),
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "repeated": [group.title for group in groups if len(set(group.seeds)) < len(group.seeds)],
         "tolerances": TOLERANCES_IN_WORDS, "tally": tally(groups),
-        "verdict_classes": {REPRODUCED: "good", WITHIN_SCATTER: "unknown", NOT_REPRODUCED: "bad", UNDECIDABLE: "unknown"},
+        "verdict_classes": dict(zip(KINDS, ("good", "unknown", "bad", "unknown"))),
         "value": value_text, "ours": ours_text, "difference": difference_text,
         "megapascal": lambda pair: " / ".join(f"{1e-6 * limit:.1f}" for limit in pair),
     }
@@ -181,15 +185,25 @@ def found_sentences(samples):
         ours, kind, reason = finding(sentence.parts, samples) if sentence.parts else ("–", UNDECIDABLE, "")
         if sentence.cause and kind != REPRODUCED and (ours != "–" or not sentence.parts):
             reason = f"{reason}: {sentence.cause}" if reason else sentence.cause
-        found.append(Found(sentence.where, sentence.says, sentence.paper, ours, kind, reason))
+        others = "; ".join(f"{words}: {verdict_there} ({why})" for words, verdict_there, why in other_readings(
+            sentence.parts, samples))
+        found.append(Found(sentence.where, sentence.says, sentence.paper, ours, kind,
+                           f"{reason}; {others}" if others else reason, others))
     return found
 
 
 def tally(groups):
-    """(title, seeds, number of rows by verdict) of every group."""
-    order = (REPRODUCED, NOT_REPRODUCED, UNDECIDABLE)
+    """(title, seeds, how many of the paper's numbers have each verdict) of every group; each number counts once."""
     return [(group.title, ", ".join(map(str, group.seeds)),
-             [sum(row.verdict == kind for row in group.rows) for kind in order]) for group in groups]
+             [sum(row.verdict == kind for row in group.rows if counts_once(row, group.pressure)) for kind in KINDS])
+            for group in groups]
+
+
+def counts_once(row, pressure):
+    """False for the further readings of one number: stresses with two contacts held, void ratios but e4, the peak's
+    numbers at 10 % strain; and for what Table 3 repeats of Table 2."""
+    return not (row.quantity.endswith((HELD, "_e1", "_e2")) or (row.table == "Table 3" and (
+        row.column == "10 %" or pressure == 2e6)))
 
 
 def is_count(row):
@@ -230,5 +244,6 @@ def csv_text(groups, sentences):
                             "" if row.difference is None else f"{row.difference:.6g}", row.verdict, row.reason,
                             ours_text(row)])
     for one in sentences:
-        table.writerow(["", "", "", one.where, one.says, "", one.paper, "", "", "", "", one.verdict, one.reason, one.ours])
+        table.writerow(["", "", "", one.where, one.says, "", one.paper, "", "", "", "", one.verdict, one.reason,
+                        one.ours])
     return stream.getvalue()

@@ -1,4 +1,6 @@
 """Distributions of forces at the quantiles of known laws, and states whose shares are known by hand."""
+from statistics import NormalDist
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,15 @@ def test_the_tail_of_an_exponential_law_has_its_exponent():
     assert beta == pytest.approx(1, abs=2e-3)  # what lies beyond the last quantile is missing
     assert error == pytest.approx(1 / np.sqrt(np.exp(-1) * 20000), rel=0.01)
     assert np.isnan(measures.exponential_tail(np.ones(5))).all()
+
+
+def test_the_scatter_of_a_tail_tells_an_exponential_from_half_a_normal_distribution():
+    assert measures.tail_variation(EXPONENTIAL) == pytest.approx(1, abs=0.003)
+    assert measures.tail_variation(EXPONENTIAL, start=0.5) == pytest.approx(1, abs=0.003)
+    normal = np.array([NormalDist().inv_cdf(one) for one in 0.5 + SHARES / 2])
+    tail = np.concatenate([1 + 0.1 * normal, np.full(len(normal), 1 - 0.1 * np.sqrt(2 / np.pi))])  # mean 1
+    assert measures.tail_variation(tail) == pytest.approx(np.sqrt(np.pi / 2 - 1), abs=0.002)
+    assert np.isnan(measures.tail_variation(np.ones(5)))
 
 
 def test_the_power_of_weak_forces_is_that_of_a_power_law():
