@@ -128,6 +128,8 @@ def void_ratio(selection):
     kinds = [kind for kind in ("e1", "e2", "e4") if f"void_ratio_{kind}" in run.history]
     if not selection.is_single or not kinds:
         return curve(selection, "void ratio [-]", "void_ratio", column("void_ratio"))
+    if len(run.frames) < 2:
+        return None
     figure, axes = curve_figure(ylabel="void ratio [-]")
     data = Columns()
     for kind, color, line in zip(kinds, CYCLE, LINES):

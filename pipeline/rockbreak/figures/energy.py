@@ -15,9 +15,9 @@ HATCHES = ("", "///", "...", "xx", "\\\\", "++", "oo", "--")
 
 def energy(selection):
     """The ledger of one run: what was put in, and where it went."""
-    if not selection.is_single or energies(selection.runs[0].history) is None:
-        return None
     condition, found = selection.conditions[0], energies(selection.runs[0].history)
+    if not selection.is_single or found is None or len(found.axial_strain) < 2:
+        return None
     figure, axes = curve_figure(ylabel="energy since the start of shear [MJ]")
     data = Columns()
     shown = [(kind.replace("_", " "), values, {"color": INK, "linestyle": line, "linewidth": 2.2})
@@ -36,7 +36,7 @@ def energy(selection):
 def energy_shares(selection):
     """Several conditions: where the energy had gone at the end, a bar each."""
     found = {run: energies(run.history) for run in selection.runs}
-    if selection.is_single or None in found.values():
+    if selection.is_single or None in found.values() or any(one.input[-1] == 0 for one in found.values()):
         return None
     shares = {run: one.normalised() for run, one in found.items()}
     figure, axes = bars(selection.conditions, "share of the work done on the assembly [%]")

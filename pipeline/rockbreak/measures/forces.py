@@ -128,7 +128,8 @@ def strong_share(branch, force, normal_force, limit=None):
     Radjai, Wolf, Jean and Moreau (1998): contacts above the mean carry almost the whole deviator, those below only
     pressure. C branch vectors and forces on their ends (C x 2), normal forces (C). nan where the whole is 0.
     """
-    limit = float(normal_force[normal_force > 0].mean()) if limit is None else limit
+    loaded = normal_force > 0
+    limit = limit if limit is not None else float(normal_force[loaded].mean()) if loaded.any() else 0.0
     table = deviator_by_force(branch, force, normal_force, np.array([limit]))
     return StrongShare(limit, *(float(1 - values[0]) for values in table[1:]))
 
