@@ -1,9 +1,11 @@
 """The paper's numbers as they are read, and one run beside them."""
+import numpy as np
 import pytest
 import yaml
 
 import synthetic
 from rockbreak.paper import numbers as paper
+from rockbreak.paper.class_limits import limits_table
 from rockbreak.paper.rows import LABELS, paper_rows
 from rockbreak.run.results import Results
 from rockbreak.run.run_directory import RunDirectory
@@ -53,6 +55,9 @@ def test_a_run_has_every_number_of_its_column_once(tmp_path):
     for name, counts in paper.COUNTS_2MPA[False].items():
         for strain, count in counts.items():
             assert found["Table 2", name, f"{100 * strain:g} %"].paper == count
+    assert found["Table 2", "weak_forces", "0 %"].ours == 0  # all forces are 1 MN there, later half of them less
+    assert 30 < found["Table 2", "weak_forces", "7 %"].ours < 60
+    assert found["Figs. 13, 21", "sin_phi_simplified", "peak"].ours == pytest.approx(0.5, abs=0.01)
     assert found["Table 3", "large_displacements", "end"].paper == 86
     assert found["Table 3", "strong_forces", "peak"].paper == 121
     assert found["Table 4", "void_ratio_e4", "end"][3:] == pytest.approx((0.336, 0.30 + 0.3 * 0.173))
@@ -62,6 +67,21 @@ def test_a_run_has_every_number_of_its_column_once(tmp_path):
     assert found["Sec. 4.2, 4.3", "sin_phi_misfit", "peak"].ours == pytest.approx(0.465 - 0.5, abs=0.01)
     assert found["Figs. 12, 20", "anisotropy", "peak"].ours == pytest.approx(1.0, abs=0.02)
     assert all(row.ours is not None for row in rows)
+
+
+@pytest.mark.parametrize("pressure, columns", [(2e6, 4), (4e6, 1)])
+def test_the_misfit_of_the_limits_is_that_of_the_rows(tmp_path, pressure, columns):
+    """Root mean square of ours less the paper's, over the rows of Table 2 at 2 MPa, of Table 3 at its peak elsewhere."""
+    run = results(tmp_path / "r", pressure=pressure, strain=0.173)
+    rows = [row for row in paper_rows(run) if row.table == ("Table 2" if pressure == 2e6 else "Table 3")
+            and row.column != ("10 %" if pressure == 4e6 else "")]
+    names = (paper.FORCES, ("_stresses",), ("_stresses_held",))
+    for found, ends in zip(limits_table([run]), names):
+        differences = [row.ours - row.paper for row in rows if row.row.endswith(ends)]
+        assert len(differences) == found["counts"] == columns * 3 * (
+            1 if ends == paper.FORCES else 2 if pressure == 2e6 else 1)
+        assert found["misfit"] == pytest.approx(np.sqrt(np.mean(np.square(differences))))
+        assert found["best_misfit"] <= found["misfit"]
 
 
 def test_a_breakable_run_stands_beside_the_breakable_columns(tmp_path):

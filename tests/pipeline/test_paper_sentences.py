@@ -17,7 +17,7 @@ KEY = ("contacts", "peak")
 
 
 @pytest.mark.parametrize("differences, sign, expected", [
-    ([-3.0, -2.0, -2.5], -1, REPRODUCED),          # mean -2.5, standard error 0.29
+    ([-3.3, -2.5, -1.7], -1, REPRODUCED),          # mean -2.5, standard deviation 0.8, standard error 0.46
     ([-3.0, -1.0, -2.0], -1, WITHIN_SCATTER),      # mean -2, standard error 0.58: 3.5, but of three seeds
     ([-3.0, -1.0, -2.0], 1, NOT_REPRODUCED),
     ([-4.0, 2.0, -1.0], -1, WITHIN_SCATTER),       # mean -1, standard error 1.73
@@ -75,6 +75,9 @@ def test_stages_levels_and_sameness():
     assert finding((Between("a", ("start", "peak"), 0),), samples)[1] == NOT_REPRODUCED
     assert finding((Within("a", "peak", 0.2, 0.25),), samples)[1:] == (REPRODUCED, "in 0.2 to 0.25")
     assert finding((Within("a", "peak", 0.2, 0.24),), samples)[1] == NOT_REPRODUCED
+    pressures = Samples({(p, False): {1: {("a", "peak"): value}} for p, value in ((1e6, 0.2), (2e6, 0.3))})
+    assert finding((Within("a", "peak", 0.1, 0.25),), pressures)[1] == NOT_REPRODUCED  # not at all of them
+    assert finding((Within("a", "peak", 0.1, 0.25, pressures=(1e6,)),), pressures)[1] == REPRODUCED
     assert finding((Same("a", "peak", 0.02),), samples)[1:] == (NOT_REPRODUCED, "beyond 0.02 at 2 MPa")
     assert finding((Same("a", "peak", 0.0301),), samples)[1] == REPRODUCED
     assert finding((Same("a", "start", 0.02), Between("a", ("start", "peak"), -1)), samples)[1] == NOT_REPRODUCED

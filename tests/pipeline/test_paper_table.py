@@ -22,9 +22,13 @@ STARTS = {"paper": 0.30, "void_ratio_e1": 0.21, "void_ratio_e4": 0.302}
     ("contacts", 2000, 2101, 50.4, NOT_REPRODUCED),
     ("weak_forces", 1000, 900, None, REPRODUCED),       # 10 %
     ("weak_forces", 1000, 899, 10.0, NOT_REPRODUCED),
-    ("strong_forces", 0, 10, 1.0, REPRODUCED),          # 0.5 % of 2015
-    ("strong_forces", 0, 11, 0.0, NOT_REPRODUCED),
-    ("high_vertical_stresses_held", 0, 6, None, NOT_REPRODUCED),  # 0.5 % of 1194 is 5.97
+    ("strong_forces", 56, 66, 1.0, REPRODUCED),         # 0.5 % of 2015
+    ("strong_forces", 56, 67, 0.0, NOT_REPRODUCED),
+    ("high_vertical_stresses_held", 19, 25, None, NOT_REPRODUCED),  # 0.5 % of 1194 is 5.97
+    ("strong_forces", 9, 15, None, REPRODUCED),         # 2 sqrt(9), so that none at all are too few
+    ("strong_forces", 9, 0, 1.0, NOT_REPRODUCED),
+    ("strong_forces", 0, 2, 0.0, REPRODUCED),
+    ("strong_forces", 0, 3, 0.0, NOT_REPRODUCED),
     ("particles", 1234, 1194, 0.0, NOT_REPRODUCED),     # 3 % of all particles, but none of the 40 new ones
     ("particles", 1234, 1228.1, None, REPRODUCED),      # 0.5 % of 1194 is more than 10 % of 40
     ("particles", 1411, 1389.4, None, REPRODUCED),      # 10 % of 217

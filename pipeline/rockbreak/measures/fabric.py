@@ -7,6 +7,10 @@ sin(phi)   = (a + a_n + a_t) / 2 / (1 + a a_n / 2)        (10)
 sin(phi)   = (a + a_n + a_t) / 2                          (11)
 sin(phi)   = (s_1 - s_2) / (s_1 + s_2)                    (12)  s_1, s_2: principal stresses of Eq. 13
 
+The paper calls f_0 the average of all contact forces; where contacts are unequally many by direction that is larger, by
+1 + a a_n / 2 cos 2(theta_0 - theta_n) (7 % at 10 % strain and 2 MPa), and with it (10) would have no denominator. All
+contacts count, those of boundary particles too; `dem` has none between two of these.
+
 theta is the direction of the contact normal, from the x axis; a normal and its opposite are the same direction.
 (7) is fitted by its moments, <cos 2 theta> = a/2 cos 2 theta_0 and <sin 2 theta> = a/2 sin 2 theta_0; (8) and (9) by
 least squares over the contacts, f_0 being the constant term of (8), that is, the mean over all directions.

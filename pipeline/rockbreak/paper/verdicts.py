@@ -11,16 +11,16 @@ WITHIN_SCATTER = "within the scatter"
 
 SHARE_OF_TOTALS = 0.05    # of contacts
 SHARE_OF_CLASSES = 0.10   # of the counts of classes, large displacements, new particles, and the strain at the peak
-SMALLEST_SHARE = 0.005    # of all contacts or particles: what a small count may miss
+SMALLEST_SHARE = 0.005    # of all contacts or particles: what a small count N may miss, but no more than 2 sqrt(N)
 VOID_RATIO = 0.005
 MISFIT = 0.02             # of sin(phi): our reading of "good agreement"
 SAME_START = 0.005        # void ratios are compared where our sample starts at the paper's
 
 TOLERANCES_IN_WORDS = (
     f"{SHARE_OF_TOTALS:.0%} for the total of contacts, {SHARE_OF_CLASSES:.0%} for classes, large displacements, the "
-    f"particles that breakage adds to the {PARTICLES}, and the strain at the peak, but at least {SMALLEST_SHARE:.1%} "
-    f"of all contacts or particles for a count; {VOID_RATIO:g} for void ratios; {MISFIT:g} for Eq. 10 − Eq. 12, our "
-    f"reading of “good agreement”")
+    f"particles that breakage adds to the {PARTICLES}, and the strain at the peak, but for a count at least "
+    f"{SMALLEST_SHARE:.1%} of all contacts or particles, or 2 √N of a few N (2 of none); {VOID_RATIO:g} for void "
+    f"ratios; {MISFIT:g} for Eq. 10 − Eq. 12, our reading of “good agreement”")
 
 
 def stated_tolerance(quantity, published):
@@ -34,7 +34,7 @@ def stated_tolerance(quantity, published):
     share = SHARE_OF_TOTALS if quantity == "contacts" else SHARE_OF_CLASSES
     published -= PARTICLES if quantity == "particles" else 0
     everything = CONTACTS_2MPA[False][0.0] if quantity.endswith(("forces", "contacts")) else PARTICLES
-    smallest = SMALLEST_SHARE * everything
+    smallest = min(SMALLEST_SHARE * everything, 2 * max(published, 1) ** 0.5)  # else nothing would do for a few
     return (smallest, f"{smallest:.0f}") if smallest > share * published else (
         share * published, f"{share:.0%}" + (" of the new ones" if quantity == "particles" else ""))
 
