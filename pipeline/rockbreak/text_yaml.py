@@ -122,6 +122,14 @@ class Section:
         return keys
 
 
+def flat(case, prefix=""):
+    """Nested keys of a scene as dotted.key: value."""
+    found = {}
+    for key, value in case.items():
+        found |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return found
+
+
 def flow_text(value):
     """A value as YAML on one line."""
     return f"[{', '.join(flow_text(item) for item in value)}]" if isinstance(value, list) else value

@@ -93,6 +93,7 @@ def test_directions_hold_every_contact_twice_and_their_fits(one, grid):
         found = rows_of(selection, name, column=stage)[9]
         assert found[f"{force}_fit"] == pytest.approx(at_95, rel=0.03)
         assert found[force] == pytest.approx(at_95, rel=0.05, abs=2e4)
+    assert rows_of(one, "shear_force_directions", column="end")[8]["mean_shear_force_N"] < 0  # at 85 degrees
 
 
 def test_the_density_of_forces_has_their_number_and_mean(one):
@@ -133,6 +134,9 @@ def test_breakage_is_counted_by_particles_and_by_mass(grid, one):
         assert row["value"] == pytest.approx(BROKEN[row["pressure_Pa"]] / 48, rel=1e-5)
     for row in rows_of(grid, "breakage_by_pressure", measure="fragments"):
         assert row["value"] == pytest.approx(BROKEN[row["pressure_Pa"]] / 48, rel=1e-5)
+    # Halves, of 0.71 times the size, pass two sieves more; Hardin's limit is a third of the size before, as none is told.
+    for name, value in (("marsal", 6 / 48), ("hardin", 6 / 48 * np.log(2) / 2 / np.log(3)), ("fragments", 6 / 48)):
+        assert rows_of(one, "breakage_against_strain", measure=name)[-1]["value"] == pytest.approx(value, rel=1e-5)
     generations = rows_of(one, "fragments_by_generation")
     assert [(row["particles"], row["share_of_mass"]) for row in generations] == pytest.approx(
         [(42, 42 / 48), (12, 6 / 48)], rel=1e-5)

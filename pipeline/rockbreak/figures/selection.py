@@ -3,6 +3,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ..style import BLUE, CYCLE, LINES, MARKERS, VERMILION, sequence
+from ..text_yaml import flat
 
 REFERENCE_PRESSURE = 2e6  # [Pa] at which the paper shows what depends on strain
 # What may differ between the runs of one condition: the seed, and what follows from where a run was made.
@@ -129,11 +130,3 @@ def variant_of(run, runs):
     varied = [key for key in sorted(mine) if not key.startswith(FREE_KEYS)
               and any(str(peer.get(key)) != str(mine[key]) for peer in peers)]
     return ", ".join(f"{key.rpartition('.')[2].replace('_', ' ')} {mine[key]}" for key in varied)
-
-
-def flat(case, prefix=""):
-    """Nested keys as a.b: value."""
-    found = {}
-    for key, value in case.items():
-        found |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return found

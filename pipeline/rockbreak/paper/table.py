@@ -23,6 +23,7 @@ from .verdicts import NOT_REPRODUCED, REPRODUCED, TOLERANCES_IN_WORDS, UNDECIDAB
 from ..report.page import render
 from ..run.results import Results
 from ..run.run_directory import RunDirectory, write_text
+from ..text_yaml import flat
 
 # What may differ between the runs of one group: the seed, and what follows from where a run was made.
 FREE_KEYS = ("seed", "output.", "preparation.from")
@@ -144,14 +145,6 @@ def grouped(runs):
     for group in groups:
         group.rows = rows_of(group)
     return groups
-
-
-def flat(case, prefix=""):
-    """Nested keys as a.b: value."""
-    found = {}
-    for key, value in case.items():
-        found |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return found
 
 
 def rows_of(group):

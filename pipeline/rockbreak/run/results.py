@@ -54,15 +54,13 @@ class Results:
         return summarize(self)
 
     @cached_property
-    def stages(self):
-        """(name, frame number) at the start, at the peak and at the end; fewer if they coincide."""
+    def _stages(self):
         peak = nearest(self.frames, self.summary["peak_strain"] or 0.0)
-        rows = {len(self.frames) - 1: "end", peak: "peak", 0: "start"}
-        return [(rows[row], self.frames[row]["frame"]) for row in sorted(rows)]
+        return {stage: self.frames[row]["frame"] for stage, row in (("start", 0), ("peak", peak), ("end", -1))}
 
     def stage_frame(self, stage):
-        """Its frame number; the last one if that stage has none of its own."""
-        return dict(self.stages).get(stage, self.frames[-1]["frame"])
+        """Frame number at the "start", the "peak" or the "end" of shear; they may coincide."""
+        return self._stages[stage]
 
     def ledger(self):
         """Read anew each time: it grows while a report is made."""
