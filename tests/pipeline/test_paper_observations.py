@@ -88,10 +88,11 @@ def test_stages_are_the_frames_nearest_to_their_strains(results):
         assert moved == pytest.approx(frame / 20, abs=0.01)
 
 
-def test_strengths_are_those_of_the_peak_and_of_the_last_2_percent(results):
+def test_strengths_are_those_of_the_peak_of_the_last_2_percent_and_of_2_percent_around_7_and_10(results):
     found = observe(results)
-    last = np.linspace(STRAIN - 0.02, STRAIN, 200)
-    assert found["sin_phi", "end"] == pytest.approx(np.mean(0.4 + 0.1 * np.exp(-(last - 0.04) / 0.02)), abs=1e-4)
+    for column, middle in (("end", STRAIN - 0.01), ("7 %", 0.07), ("10 %", 0.10)):
+        strain = np.linspace(middle - 0.01, middle + 0.01, 200)
+        assert found["sin_phi", column] == pytest.approx(np.mean(0.4 + 0.1 * np.exp(-(strain - 0.04) / 0.02)), abs=1e-4)
     assert found["sin_phi", "peak"] == pytest.approx(0.5, abs=0.003)
 
 

@@ -1,7 +1,8 @@
 """What the paper's sentences speak of, measured in one run: quantity and column -> number.
 
 Columns are stages of the test: "start" and "end" of shear, "peak" of shear strength, "2 %", "7 %", "10 %", "17.3 %" of
-axial strain; "test" is the whole of it. A stage that the run has not reached has no entries.
+axial strain; "test" is the whole of it. A stage that the run has not reached has no entries. sin(phi) at the end is the
+mean over the last 2 % of strain, at 7 and 10 % that over 1 % to both sides.
 """
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..measures.gradation import frame_gradation
 from .rows import LABELS
 from ..run.history import running_mean, shear_rows, sin_phi
 from ..run.results import nearest
-from ..run.summary import SMOOTHING_WINDOW
+from ..run.summary import RESIDUAL_WINDOW, SMOOTHING_WINDOW
 
 WORDS = LABELS | {
     "vertical_normal_force": "vertical normal force, Eq. 8 [kN]",
@@ -117,6 +118,11 @@ def tilt(direction, axis):
 def of_the_test(results):
     summary = results.summary
     found = {("sin_phi", "peak"): summary["peak_sin_phi"], ("peak_strain", "peak"): summary["peak_strain"]}
+    rows = shear_rows(results.history)
+    for column in ("7 %", "10 %"):
+        if results.frames[-1]["axial_strain"] >= STRAINS[column] + RESIDUAL_WINDOW / 2:
+            near = np.abs(rows["axial_strain"] - STRAINS[column]) <= RESIDUAL_WINDOW / 2
+            found["sin_phi", column] = sin_phi(rows)[near].mean()
     found |= {(f"eq{equation}_error", "test"): value for equation, value in equations_10_11(results).items()}
     if not summary["complete"]:
         return found
