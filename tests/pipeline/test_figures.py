@@ -147,6 +147,31 @@ def test_breakage_is_counted_by_particles_and_by_mass(grid, one):
     assert sum(row["share_of_breakages"] for row in rows_of(one, "crack_rose")) == pytest.approx(1)
 
 
+def test_the_rose_of_breakage_lines_tells_modes_apart_and_sums_to_one(tmp_path):
+    run = synthetic.write_run(tmp_path / "run", frames=3, breaks=lambda k: 6 if k == 0 else 0)
+    with synthetic.edited(run / "splits" / "000000.h5") as split:
+        parents = split["broken/parent"][:]
+        split["particles/failure_mode"][:] = [1 + (k in parents[:2]) for k in split["particles/id"]]  # 2: shear
+        path = split["broken/path"][:]
+    rows = rows_of(selection_of(run), "crack_rose")
+    for mode, share in (("tension", 4 / 6), ("shear", 2 / 6)):
+        assert sum(row["share_of_breakages"] for row in rows if row["mode"] == mode) == pytest.approx(share, rel=1e-5)
+    angle = np.degrees(np.arctan2(*(path[:, 1] - path[:, 0]).T[::-1])) % 180
+    for row in rows:
+        expected = np.sum(np.abs((angle[:2] if row["mode"] == "shear" else angle[2:]) - row["direction_degrees"]) < 5) / 6
+        assert row["share_of_breakages"] == pytest.approx(expected, rel=1e-5)
+
+
+def test_curves_of_several_seeds_are_their_mean(tmp_path):
+    runs = [synthetic.write_run(tmp_path / f"{pressure:g} {seed}", frames=3, pressure=pressure, contacts=contacts)
+            for pressure, seed, contacts in ((1e6, 1, 90), (1e6, 2, 96), (4e6, 1, 90))]
+    case = (runs[1] / "case.yaml").read_text()
+    (runs[1] / "case.yaml").write_text(case.replace("seed: 1", "seed: 2"))
+    means = rows_of(selection_of(*runs), "contacts", condition="1 MPa")
+    assert len(means) > 1 and all(row["contacts"] == 93 for row in means)
+    assert all(row["contacts_deviation"] == pytest.approx(np.std([90, 96], ddof=1), rel=1e-4) for row in means)
+
+
 def test_shares_of_the_energy_are_those_that_were_written(grid):
     shares = {row["kind"]: row["share"] for row in rows_of(grid, "energy_shares", condition="1 MPa, solid")}
     assert shares == pytest.approx({"friction": 0.6, "elastic, change": 0.2, "damping": 0.1, "contact law": 0.05,

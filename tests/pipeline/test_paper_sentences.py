@@ -131,7 +131,8 @@ def test_a_reading_at_the_other_stage_or_of_the_other_stress_is_named_where_its_
         ("at the peak", NOT_REPRODUCED, "the other sign")]
     assert other_readings((ByBreakage("a", "peak", -1),), samples) == [("at 10 %", REPRODUCED, "all seeds alike")]
     assert other_readings((ByBreakage("a_n", "10 %", -1),), samples) == []  # the same verdict
-    assert other_readings((ByBreakage("a_t", "10 %", -1),), samples) == []  # not measured at the peak
+    assert other_readings((ByBreakage("a_t", "10 %", -1),), samples) == []  # measured nowhere else
+    assert other_readings((Between("a", ("10 %", "peak"), -1),), samples) == []
     assert other_readings((ByBreakage("high_vertical_stresses", "10 %", -1),), samples)[0][:2] == (
         "stresses with two contacts held", REPRODUCED)
 

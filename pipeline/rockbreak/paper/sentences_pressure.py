@@ -1,7 +1,7 @@
 """The sentences of the paper's Sections 4.3 and 5 that state a number or a trend; see sentences.py. What Section 5
 repeats from Section 4 stands once, under its figure."""
 from .evidence import ByBreakage, Same, WithPressure, Within
-from .sentences import BROKEN, SECTION_4_1, SECTION_4_2, SOLID, Sentence
+from .sentences import BROKEN, DELAYED, SECTION_4_1, SECTION_4_2, SOLID, Sentence
 from .verdicts import MISFIT
 
 DIFFERENCE = (None,)  # paired: breakable less non-breakable
@@ -86,9 +86,10 @@ SECTION_4_3 = (
     Sentence("4.3, Figs. 21, 22", "Eq. 10 is more accurate without breakage", "drawn",
              (ByBreakage("eq10_error", "test", 1),),
              "ours is more accurate with breakage, at every pressure"),
-    Sentence("4.3, Fig. 21; 5", "breakage lowers the peak strength", "drawn", (ByBreakage("sin_phi", "peak", -1),)),
+    Sentence("4.3, Fig. 21; 5", "breakage lowers the peak strength", "drawn", (ByBreakage("sin_phi", "peak", -1),),
+             DELAYED),
     Sentence("4.3, Fig. 21; 5", "the more the higher the pressure", "drawn",
-             (WithPressure("sin_phi", "peak", -1, DIFFERENCE),)),
+             (WithPressure("sin_phi", "peak", -1, DIFFERENCE),), DELAYED),
     Sentence("5, Fig. 22", "the peak friction angle falls with the pressure", "drawn",
              (WithPressure("sin_phi", "peak", -1),)),
     Sentence("4.3, Fig. 21", "the residual strength is nearly independent of breakage (our reading: within 0.02)",
