@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/geometry/center.hpp"
 #include "dem/stages/hilbert.hpp"
 
 namespace dem {
@@ -23,15 +24,42 @@ constexpr double kFirstSolidFraction = 0.58;
 constexpr int kTrials = 10000;
 constexpr double kGrowth = 1.02;
 
+/// Beside an edge as short as this, a corner as flat as that (both in diameters) is left out.
+constexpr double kShortEdge = 1e-4;
+constexpr double kFlat = 1e-12;
+
+/// Leaves out the corners of an outline of diameter 1 that are straight, to rounding, beside a short edge. Points that
+/// a drawing has twice on a straight edge make such corners: the line along the edge between them, along which contacts
+/// are clipped, turns by rounding over its length, and cuts into the outline at the far end of the long edge.
+void leave_out_flat_corners(Polygon& outline) {
+  std::size_t seen = 0;  // corners in a row that stay
+  for (std::size_t i = 0; seen < outline.size() && outline.size() > 3;) {
+    const std::size_t n = outline.size();
+    const Vec2& before = outline[(i + n - 1) % n];
+    const Vec2& after = outline[(i + 1) % n];
+    const Vec2 base = after - before;
+    const double shorter = std::min((outline[i] - before).norm(), (after - outline[i]).norm());
+    if (shorter < kShortEdge && common::cross(outline[i] - before, base) <= kFlat * base.norm()) {
+      outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(i));
+      i = (i + n - 2) % (n - 1);  // the corner before has another neighbour now
+      seen = 0;
+    } else {
+      i = (i + 1) % n;
+      ++seen;
+    }
+  }
+}
+
 /// Diameter 1, centroid at the origin, counter-clockwise.
 Polygon normalized(Polygon outline, const std::string& name) {
   if (outline.size() >= 3 && common::area(outline) < 0) std::reverse(outline.begin(), outline.end());
   if (const std::string defect = common::outline_defect(outline); !defect.empty()) {
     throw common::bad_input(fmt::format("{}: {}", name, defect));
   }
-  const Vec2 center = common::centroid(outline);
+  const common::Center center = common::center_of(outline);
   const double diameter = common::diameter(outline);
-  for (Vec2& vertex : outline) vertex = (vertex - center) / diameter;
+  for (Vec2& vertex : outline) vertex = center.to(vertex) / diameter;
+  leave_out_flat_corners(outline);
   return outline;
 }
 

@@ -15,6 +15,7 @@
 #include <numbers>
 
 #include "common/error.hpp"
+#include "common/geometry/center.hpp"
 #include "common/math/random.hpp"
 #include "xfem/lab/brazilian.hpp"
 #include "xfem/lab/kinds.hpp"
@@ -48,10 +49,10 @@ Polygon generated_outline(const common::SpecimenOptions& options, common::Random
 
 /// From the frame of the given outline to the specimen's: scaled about the centroid, then turned.
 struct Placement {
-  Vec2 center;
+  common::Center center;
   double scale;
   common::Rotation turn;
-  Vec2 operator()(const Vec2& p) const { return turn * Vec2(scale * (p - center)); }
+  Vec2 operator()(const Vec2& p) const { return turn * Vec2(scale * center.to(p)); }
 };
 
 Polygon placed(const Polygon& outline, const Placement& placement) {
@@ -155,7 +156,7 @@ void require_balance(const std::vector<Load>& loads, const common::LabTest& test
 /// Outline in its own frame and how it is placed, the axis at `turn` [rad] becoming y.
 std::pair<Polygon, Placement> particle(const common::LabTest& test, common::Random& random, double turn) {
   const Polygon own = test.specimen.outline.empty() ? generated_outline(test.specimen, random) : test.specimen.outline;
-  return {own, {common::centroid(own), test.specimen.diameter / common::diameter(own), common::Rotation(-turn)}};
+  return {own, {common::center_of(own), test.specimen.diameter / common::diameter(own), common::Rotation(-turn)}};
 }
 
 LabSetup particle_setup(const common::LabTest& test, Polygon outline) {

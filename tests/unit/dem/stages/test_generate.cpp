@@ -187,6 +187,38 @@ TEST_CASE("given outlines are scaled, centred and turned counter-clockwise") {
   for (const Polygon& type : types) CHECK(common::centroid(type).norm() < 1e-15);
 }
 
+TEST_CASE("given outlines in coordinates of a survey are centred to their own rounding, not to that of the place") {
+  // Corners on a grid of 2^-20 m, the ones at 10^7 m the same to the last bit.
+  const Polygon near{Vec2(0.625, 0), Vec2(1.375, 0.25), Vec2(0.875, 1.125), Vec2(0x1p-20, 0.5)};
+  Polygon far = near;
+  for (Vec2& vertex : far) vertex += Vec2(450123, 9876543);
+  common::ShapeOptions options;
+  options.source = "outlines";
+  options.outlines = {near, far};
+  common::Random random(1);
+  const auto types = dem::make_shape_types(options, random);
+  CHECK(common::centroid(types[1]).norm() < 1e-15);
+  for (std::size_t i = 0; i < near.size(); ++i) CHECK((types[1][i] - types[0][i]).norm() < 1e-15);
+}
+
+TEST_CASE("corners of given outlines that are straight beside a short edge are left out, no others") {
+  const Polygon square{Vec2(0, 0), Vec2(3, 0), Vec2(3, 3), Vec2(0, 3)};
+  const Polygon twice{Vec2(0, 0), Vec2(1, 0), Vec2(1 + 1e-8, 0), Vec2(3 - 1e-9, 0),
+                      Vec2(3, 0), Vec2(3, 3), Vec2(0, 3),        Vec2(0, 1e-7)};
+  // A corner of 90 degrees and one of 1e-3 rad beside short edges, and a straight one between long edges.
+  const Polygon corners{Vec2(0, 0),        Vec2(1, 0),        Vec2(3 - 1e-6, 0), Vec2(3, 1e-6),
+                        Vec2(3, 3 - 1e-6), Vec2(3 - 1e-9, 3), Vec2(0, 3)};
+  common::ShapeOptions options;
+  options.source = "outlines";
+  options.outlines = {square, twice, corners};
+  common::Random random(1);
+  const auto types = dem::make_shape_types(options, random);
+  CHECK(types[2].size() == corners.size());
+  // Of the points at 1 one is left, which is straight between long edges.
+  REQUIRE(types[1].size() == 5);
+  CHECK(common::area(types[1]) == Approx(common::area(types[0])).epsilon(1e-14));
+}
+
 TEST_CASE("bad shape options are refused by name") {
   common::ShapeOptions options;
   options.source = "outlines";
