@@ -63,8 +63,8 @@ void find_overlap(const OutlineView& a, const OutlineView& b, PairFeature& featu
 
 /// Overlap of two convex counter-clockwise polygons, at most kMaxOverlapVertices vertices together.
 /// Never allocates, never fails: touching or separated polygons give area 0.
-/// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, if the coordinates are relative to one of the
-/// two particles. Writes `outline` unless it is null.
+/// |area - exact| <= 1e-10 exact + 1e-15 D^2, D the larger diameter, in coordinates relative to one of the two; 7e-16
+/// D^3 / L more where a corner beside an edge of length L is straight to rounding. Writes `outline` unless it is null.
 inline Overlap overlap(const OutlineView& a, const OutlineView& b, PairFeature& feature, OverlapOutline* outline) {
   Overlap result;
   if (outline) outline->size = 0;

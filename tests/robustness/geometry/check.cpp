@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include "tests/robustness/geometry/clip_double_double.hpp"
 #include "tests/robustness/geometry/clip_exact.hpp"
@@ -28,11 +27,27 @@ constexpr double kBoundShare = 1e-3;
 /// corners to a common origin; u = 2^-53.
 constexpr double kCrossing = 2e-15;
 
+/// Times D: how far shifting to an origin up to 2 D away moves a corner, 2 u D in each coordinate.
+constexpr double kShift = 3.2e-16;
+
+/// Times D: edges nearer to each other than this may meet.
+constexpr double kMeet = 1e-12;
+
 double seconds() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+/// What the lines along an outline's edges may cut off it. Its corners being rounded relative to a common origin by r,
+/// an edge of length L turns by 2 r / L, so that its line passes r (1 + 2 s / L) inside a corner on it at a distance s.
+/// One that lies outside, the outline being convex to rounding only, is cut off by so much more. Ordinary outlines lose
+/// nothing: the corner beside the edge would have to be flat to 2 r / L, 6e-10 for L = 1e-6 D.
+struct CutOff {
+  double depth = 0;
+  double area = 0;
+  std::uint64_t lines = 0;  ///< bit i: the line along edge i is one of those, by more than kMeet
+};
 
 /// What the overlap is, by the oracles.
 struct Reference {
@@ -42,6 +57,7 @@ struct Reference {
   bool exact = false;  ///< the area is the rational one
   double area = 0;
   double tolerance = 0;
+  CutOff off_a, off_b;
   std::optional<Vec2> chord;  ///< if well defined
   double chord_tolerance = 0;
 };
@@ -62,27 +78,78 @@ struct Box {
   }
 };
 
+/// An edge from its start; `height` is the distance to its left.
+struct Edge {
+  Vec2 start, along;
+  double length;
+
+  Edge(const Outline& outline, int i)
+      : start(outline.x[i], outline.y[i]),
+        along(Vec2(outline.x[outline.next(i)], outline.y[outline.next(i)]) - start),
+        length(along.norm()) {}
+  Vec2 end() const { return start + along; }
+  double height(const Vec2& p) const { return common::cross(along, p - start) / length; }
+};
+
+std::vector<Edge> edges_of(const Outline& outline) {
+  std::vector<Edge> edges;
+  for (int i = 0; i < outline.size; ++i) edges.emplace_back(outline, i);
+  return edges;
+}
+
+/// How far beyond a sharp corner next to it rounding may place a point: the edges that meet there, each off by what
+/// moves a crossing, meet by that much over the sine of their angle outside the outline.
+double beyond_corner(const Outline& outline, const Vec2& p, double diameter) {
+  double farthest = 0;
+  for (int i = 0; i < outline.size; ++i) {
+    const Edge from(outline, outline.previous(i)), to(outline, i);
+    if (from.along.dot(to.along) >= 0) continue;
+    const double sine = common::cross(from.along, to.along) / (from.length * to.length);
+    const double distance = kCrossing * diameter / std::abs(sine);
+    if ((p - to.start).norm() <= distance) farthest = std::max(farthest, distance);
+  }
+  return farthest;
+}
+
+CutOff cut_off(const Outline& outline, double diameter) {
+  CutOff result;
+  const double r = kShift * diameter;
+  for (int i = 0; i < outline.size; ++i) {
+    const Edge line(outline, i);
+    double deepest = 0, farthest = 0;
+    for (int k = outline.next(outline.next(i)); k != i; k = outline.next(k)) {
+      const Vec2 corner(outline.x[k], outline.y[k]);
+      const double height = line.height(corner);
+      if (height > r * (1 + 2 * diameter / line.length)) continue;
+      const double distance = (corner - line.start).norm();
+      const double inside = r * (1 + 2 * distance / line.length) - height;
+      if (inside <= 0) continue;
+      deepest = std::max(deepest, inside);
+      farthest = std::max(farthest, distance);
+    }
+    result.depth = std::max(result.depth, deepest);
+    result.area += deepest * farthest;
+    if (deepest > kMeet * diameter) result.lines |= std::uint64_t{1} << i;
+  }
+  return result;
+}
+
 /// Sum of 1 / sin(angle) over the pairs of edges that meet or nearly do: by so much moves the chord when a vertex does.
-double grazing(const OutlinePair& pair, double diameter) {
-  const double near = 1e-12 * diameter;
+/// A line that cuts off a part of its outline may meet the other one beyond the ends of its edge.
+double grazing(const OutlinePair& pair, const CutOff& off_a, const CutOff& off_b, double diameter) {
+  const std::vector<Edge> of_a = edges_of(pair.a), of_b = edges_of(pair.b);
+  const double near = kMeet * diameter + std::max(off_a.depth, off_b.depth);
+  const auto apart = [near](const Edge& line, const Edge& edge) {
+    const double from = line.height(edge.start), to = line.height(edge.end());
+    return std::min(from, to) > near || std::max(from, to) < -near;
+  };
   double sum = 0;
-  for (int j = 0; j < pair.b.size; ++j) {
-    const Vec2 v(pair.b.x[j], pair.b.y[j]);
-    const Vec2 window = Vec2(pair.b.x[pair.b.next(j)], pair.b.y[pair.b.next(j)]) - v;
-    const double window_margin = near * window.norm();
-    const auto above_b = [&](int i) { return common::cross(window, Vec2(pair.a.x[i], pair.a.y[i]) - v); };
-    double start = above_b(0);
-    for (int i = 0; i < pair.a.size; ++i) {
-      const double end = above_b(pair.a.next(i));
-      const double height_start = std::exchange(start, end);
-      if (std::min(height_start, end) > window_margin || std::max(height_start, end) < -window_margin) continue;
-      const Vec2 p(pair.a.x[i], pair.a.y[i]);
-      const Vec2 edge = Vec2(pair.a.x[pair.a.next(i)], pair.a.y[pair.a.next(i)]) - p;
-      const double margin = near * edge.norm();
-      const double from = common::cross(edge, v - p);
-      const double to = from + common::cross(edge, window);
-      if (std::min(from, to) > margin || std::max(from, to) < -margin) continue;
-      sum += edge.norm() * window.norm() / std::abs(common::cross(edge, window));
+  for (std::size_t j = 0; j < of_b.size(); ++j) {
+    const bool whole_b = off_b.lines >> j & 1;
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+      const bool whole_a = off_a.lines >> i & 1;
+      if ((!whole_a && apart(of_b[j], of_a[i])) || (!whole_b && apart(of_a[i], of_b[j]))) continue;
+      sum += of_a[i].length * of_b[j].length / std::abs(common::cross(of_a[i].along, of_b[j].along));
     }
   }
   return sum;
@@ -107,10 +174,13 @@ Reference refer(const Sample& sample, Tally& tally) {
   tally.undecided += !decided;
   reference.exact = !decided || sample.exact;
   reference.area = reference.exact ? verified_area(pair, clip, tally) : clip.area;
-  reference.tolerance = area_tolerance(reference.area, reference.diameter);
   const double size = reference.diameter;
+  const CutOff& off_a = reference.off_a = cut_off(sample.pair.a, size);
+  const CutOff& off_b = reference.off_b = cut_off(sample.pair.b, size);
+  reference.tolerance = area_tolerance(reference.area, size) + off_a.area + off_b.area;
   if (reference.area > 1e-10 * size * size) {
-    reference.chord_tolerance = clip.chord_error + kCrossing * size * (4 + grazing(pair, size));
+    const double off = kCrossing * size + std::max(off_a.depth, off_b.depth);
+    reference.chord_tolerance = clip.chord_error + off * (4 + grazing(sample.pair, off_a, off_b, size));
     if (reference.chord_tolerance < 1e-6 * std::sqrt(reference.area)) reference.chord = clip.chord;
   }
   return reference;
@@ -136,13 +206,17 @@ std::string complaint(const Overlap& found, const Sample& sample, const Referenc
   if (found.crossings < 0 || found.crossings % 2 != 0) return "crossings";
   const double size = reference.diameter;
   const Box box_a(sample.pair.a), box_b(sample.pair.b);
-  double margin = 1e-15 * size + 0x1p-52 * std::max(box_a.reach(), box_b.reach());
-  const auto outside = [&](const Vec2& p) { return !box_a.contains(p, margin) || !box_b.contains(p, margin); };
-  // An area that no double tells from a gap is somewhere along the edges that graze each other.
-  const bool rounding = found.area < 1e-15 * size * size;
-  if (rounding && (outside(found.centroid) || outside(found.chord_midpoint))) {
-    margin += kCrossing * size * grazing(sample.pair, size);
-  }
+  const auto outside = [&](const Vec2& p) {
+    double margin = 1e-15 * size + 0x1p-52 * std::max(box_a.reach(), box_b.reach());
+    const auto beyond = [&] { return !box_a.contains(p, margin) || !box_b.contains(p, margin); };
+    if (!beyond()) return false;
+    margin += std::max(beyond_corner(sample.pair.a, p, size), beyond_corner(sample.pair.b, p, size));
+    // An area that no double tells from a gap is somewhere along the edges that graze each other.
+    if (found.area < 1e-15 * size * size) {
+      margin += kCrossing * size * grazing(sample.pair, reference.off_a, reference.off_b, size);
+    }
+    return beyond();
+  };
   if (outside(found.centroid)) return "centroid";
   if (outside(found.chord_midpoint)) return "chord midpoint";
   if (!reference.chord) return {};
@@ -212,8 +286,9 @@ std::string complaint(const common::OverlapOutline& outline, const Overlap& foun
     if (!vertex(i).allFinite()) return "polygon not finite";
     twice_area += common::cross(vertex(i), vertex(i + 1));
     const Vec2 middle = outline.origin + 0.5 * (vertex(i) + vertex(i + 1));
-    const Outline& owner = i < outline.first_a ? sample.pair.b : sample.pair.a;
-    if (distance_from_edges(owner, middle) > off) return "polygon off the boundary";
+    const bool of_b = i < outline.first_a;
+    const double within = off + (of_b ? reference.off_b : reference.off_a).depth;
+    if (distance_from_edges(of_b ? sample.pair.b : sample.pair.a, middle) > within) return "polygon off the boundary";
   }
   if (!(std::abs(0.5 * twice_area - reference.area) <= reference.tolerance)) return "area of the polygon";
   const double chord = vertex(outline.first_a).norm();
@@ -326,11 +401,14 @@ std::string describe(const Sample& sample, Kernel kernel) {
   const double size = std::max(diameter(pair.a), diameter(pair.b));
   const DoubleDoubleClip clip = clip_double_double(pair);
   const double exact = exact_area(pair);
+  const CutOff off_a = cut_off(sample.pair.a, size), off_b = cut_off(sample.pair.b, size);
   text += fmt::format("corners that do not turn left {}\n", left_out);
   text += fmt::format("exact area        {:.17g}, tolerance {:.3g}\n", exact, area_tolerance(exact, size));
-  text +=
-      fmt::format("double-double     {:.17g} +- {:.2g}, chord ({:.17g}, {:.17g}) +- {:.2g}, grazing {:.3g}\n",
-                  clip.area, clip.area_error, clip.chord.x(), clip.chord.y(), clip.chord_error, grazing(pair, size));
+  text += fmt::format(
+      "double-double     {:.17g} +- {:.2g}, chord ({:.17g}, {:.17g}) +- {:.2g}, grazing {:.3g}, "
+      "cut off ({:.3g} m, {:.3g} m^2), ({:.3g}, {:.3g})\n",
+      clip.area, clip.area_error, clip.chord.x(), clip.chord.y(), clip.chord_error,
+      grazing(sample.pair, off_a, off_b, size), off_a.depth, off_a.area, off_b.depth, off_b.area);
   const auto write_overlap = [&](const char* name, const Overlap& o) {
     text += fmt::format(
         "{} area {:.17g} (share {:.3g}), width {:.17g}, normal ({:.17g}, {:.17g}), centroid ({:.17g}, {:.17g}), "

@@ -46,7 +46,7 @@ struct Tally {
   std::int64_t not_convex = 0;       ///< outlines with a corner that rounding made flat or reentrant
   std::int64_t disagreements = 0;    ///< pairs with anything wrong
   std::int64_t oracle_failures = 0;  ///< the two oracles differ by more than the first one's bound
-  double worst_share = 0;            ///< largest |A - A_exact| / (1e-10 A_exact + 1e-15 D^2)
+  double worst_share = 0;            ///< largest |A - A_exact| / what is allowed
   double worst_chord_share = 0;
   double seconds_unknown = 0;                 ///< in the kernel, nothing known of the pair
   double seconds_cached = 0;                  ///< in the kernel, starting from the pair's feature
@@ -57,17 +57,19 @@ struct Tally {
   void add(const Tally& other);
 };
 
-/// What common::overlap promises: 1e-10 exact + 1e-15 D^2, D the larger diameter.
+/// What common::overlap promises but for short edges: 1e-10 exact + 1e-15 D^2, D the larger diameter.
 double area_tolerance(double exact, double diameter);
 
 /// Checks every sample and leaves the pair's feature in it, as the engine does. Per pair:
 ///  - area against the oracle: nothing known, with the sample's feature, with the feature just learned, with a feature
 ///    made up, with one learned at another place, and with a and b exchanged;
 ///  - finite numbers, unit normal, width >= sqrt(area), an even number of crossings, nothing set without an overlap;
-///  - centroid and chord midpoint inside both bounding boxes; an area below 1e-15 D^2 may be out by rounding over the
-///    sine of the angle at which edges graze each other;
+///  - centroid and chord midpoint inside both bounding boxes; next to a sharp corner they may be out by rounding over
+///    its sine, an area below 1e-15 D^2 by rounding over the sine of the angle at which edges graze each other;
 ///  - width * normal against the oracle's chord, -dA/d(position of b), where edges that meet do not do so at a grazing
-///    angle: within rounding over the sine of that angle.
+///    angle: within rounding over the sine of that angle;
+///  - of an outline with a corner that is straight, to rounding, beside a short edge, area and chord within what the
+///    line along that edge cuts off: rounding over the length of the edge.
 ///  - the overlap polygon, if there is one: its area within the tolerance, its pieces on the boundaries that it names,
 ///    from crossing to crossing; and nobody's answer changed by asking for it.
 void check(std::span<Sample> samples, Kernel kernel, Tally& tally);

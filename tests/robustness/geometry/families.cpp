@@ -291,6 +291,43 @@ void flat_corners(Draw& draw, OutlinePair& pair) {
   press(pair.a, edge, pair.b, zero_or(draw, -58, -7), draw.uniform(-0.35, 0.35));
 }
 
+/// b's corner, or a place on its edge, on a's, to within a few last digits or deeper.
+void bring_together(Draw& draw, const Outline& a, Outline& b) {
+  const int i = any_vertex(draw, a), j = any_vertex(draw, b);
+  const Vec2 target = draw.one_in(2) ? vertex(a, i) : on_edge(a, i, draw.uniform());
+  shift(b, target - (draw.one_in(2) ? vertex(b, j) : on_edge(b, j, draw.uniform())));
+  shift(b, zero_or(draw, -58, -7) * draw.direction());
+}
+
+/// Edges of 1e-3 to 1e-9 of the size at corners, going on nearly straight from a long edge: where the line along them
+/// passes the far end of that edge is rounding over their length.
+void short_edges(Draw& draw, OutlinePair& pair) {
+  const auto with_short_edges = [&draw](const Outline& outline) {
+    Outline result;
+    for (int i = 0; i < outline.size; ++i) {
+      const Vec2 p = vertex(outline, i);
+      const Vec2 before = on_edge(outline, outline.previous(i), 1 - draw.magnitude(-30, -10));
+      const Vec2 after = on_edge(outline, i, draw.magnitude(-30, -10));
+      const int kind = draw.integer(0, 3);  // none, on one of the two edges, or on both without the corner
+      if (kind == 1 || kind == 3) result.add(before.x(), before.y());
+      if (kind != 3) result.add(p.x(), p.y());
+      if (kind == 2 || kind == 3) result.add(after.x(), after.y());
+    }
+    return result;
+  };
+  pair.a = with_short_edges(shape(draw));
+  pair.b = draw.one_in(2) ? shape(draw) : with_short_edges(shape(draw));
+  if (draw.one_in(4)) scale(pair.b, 0.3);
+  bring_together(draw, pair.a, pair.b);
+}
+
+/// Corners of 1e-1 to 1e-5 rad that touch something.
+void needles(Draw& draw, OutlinePair& pair) {
+  pair.a = shape(draw, draw.integer(3, 8), 0.25, std::ldexp(1, draw.integer(4, 17)));
+  pair.b = draw.one_in(2) ? shape(draw) : shape(draw, draw.integer(3, 8), 0.25, std::ldexp(1, draw.integer(4, 17)));
+  bring_together(draw, pair.a, pair.b);
+}
+
 /// Boxes, triangles, diamonds and octagons on a coarse lattice: coinciding vertices and collinear edges of every kind.
 void lattice(Draw& draw, OutlinePair& pair) {
   const auto one = [&draw] {
@@ -339,6 +376,8 @@ constexpr Family kFamilies[] = {
     {"unequal_sizes", unequal_sizes},
     {"many_corners", many_corners},
     {"flat_corners", flat_corners},
+    {"short_edges", short_edges},
+    {"needles", needles},
     {"lattice", lattice},
 };
 
