@@ -134,7 +134,7 @@ def test_breakage_is_counted_by_particles_and_by_mass(grid, one):
         assert row["value"] == pytest.approx(BROKEN[row["pressure_Pa"]] / 48, rel=1e-5)
     for row in rows_of(grid, "breakage_by_pressure", measure="fragments"):
         assert row["value"] == pytest.approx(BROKEN[row["pressure_Pa"]] / 48, rel=1e-5)
-    # Halves, of 0.71 times the size, pass two sieves more; Hardin's limit is a third of the size before, as none is told.
+    # Halves, of 0.71 times the size, pass two sieves more; Hardin's limit is a third of the size before: none is told.
     for name, value in (("marsal", 6 / 48), ("hardin", 6 / 48 * np.log(2) / 2 / np.log(3)), ("fragments", 6 / 48)):
         assert rows_of(one, "breakage_against_strain", measure=name)[-1]["value"] == pytest.approx(value, rel=1e-5)
     generations = rows_of(one, "fragments_by_generation")
@@ -158,7 +158,8 @@ def test_the_rose_of_breakage_lines_tells_modes_apart_and_sums_to_one(tmp_path):
         assert sum(row["share_of_breakages"] for row in rows if row["mode"] == mode) == pytest.approx(share, rel=1e-5)
     angle = np.degrees(np.arctan2(*(path[:, 1] - path[:, 0]).T[::-1])) % 180
     for row in rows:
-        expected = np.sum(np.abs((angle[:2] if row["mode"] == "shear" else angle[2:]) - row["direction_degrees"]) < 5) / 6
+        of_mode = angle[:2] if row["mode"] == "shear" else angle[2:]
+        expected = np.sum(np.abs(of_mode - row["direction_degrees"]) < 5) / 6
         assert row["share_of_breakages"] == pytest.approx(expected, rel=1e-5)
 
 

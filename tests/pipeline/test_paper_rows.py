@@ -71,7 +71,7 @@ def test_a_run_has_every_number_of_its_column_once(tmp_path):
 
 @pytest.mark.parametrize("pressure, columns", [(2e6, 4), (4e6, 1)])
 def test_the_misfit_of_the_limits_is_that_of_the_rows(tmp_path, pressure, columns):
-    """Root mean square of ours less the paper's, over the rows of Table 2 at 2 MPa, of Table 3 at its peak elsewhere."""
+    """Root mean square of ours less the paper's over the rows of Table 2 at 2 MPa, of Table 3's peak elsewhere."""
     run = results(tmp_path / "r", pressure=pressure, strain=0.173)
     rows = [row for row in paper_rows(run) if row.table == ("Table 2" if pressure == 2e6 else "Table 3")
             and row.column != ("10 %" if pressure == 4e6 else "")]

@@ -1,5 +1,5 @@
 """Pictures of assemblies side by side: displacements, force chains and particle stresses in classes (Figs. 3 to 6
-against strain, Figs. 14 to 16 against pressure). A row for each condition, on one scale; of several seeds the lowest."""
+against strain, Figs. 14 to 16 against pressure). A row for each condition, on one scale; of seeds the lowest."""
 import matplotlib
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap

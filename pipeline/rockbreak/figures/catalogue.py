@@ -12,8 +12,8 @@ from .drawn import Drawn
 RUN, PRESSURES = "one run", "pressures"  # what a figure needs at least
 
 SECTIONS = (("response", "Response of the assembly"), ("micro", "Particles and forces"),
-            ("fabric", "Fabric and strength"), ("pressure", "Effect of the confining pressure"), ("breakage", "Breakage"), ("energy", "Energy"),
-            ("checks", "Checks"))
+            ("fabric", "Fabric and strength"), ("pressure", "Effect of the confining pressure"),
+            ("breakage", "Breakage"), ("energy", "Energy"), ("checks", "Checks"))
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,8 @@ CATALOGUE = (
           "of breakage are black.", pictures(assemblies.displacements)),
     Entry("force_chains", "4", "micro", "Normal force chains",
           "A line joins the centroids of two particles over their contact point; colour and width tell the class of "
-          f"the normal force. Boundary particles are darker. {CLASSES_NOTE} {FITTED}", pictures(assemblies.force_chains)),
+          f"the normal force. Boundary particles are darker. {CLASSES_NOTE} {FITTED}",
+          pictures(assemblies.force_chains)),
     Entry("vertical_stresses", "5", "micro", "Vertical particle stresses", STRESS,
           pictures(assemblies.vertical_stresses)),
     Entry("horizontal_stresses", "6", "micro", "Horizontal particle stresses", STRESS,

@@ -138,7 +138,7 @@ def of_the_test(results):
 
 
 def equations_10_11(results):
-    """Mean of |Eq. 10 - Eq. 12| and of Eq. 11 - Eq. 12 over the test, in frames FABRIC_SPACING apart; {} without any."""
+    """Mean of |Eq. 10 - Eq. 12| and of Eq. 11 - Eq. 12 over the test, in frames FABRIC_SPACING apart; {} if none."""
     rows = shear_rows(results.history)
     if not len(rows["axial_strain"]):
         return {}

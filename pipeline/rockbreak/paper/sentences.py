@@ -93,7 +93,8 @@ SECTION_4_1 = (
     Sentence("4.1, Fig. 7", "at the start low forces prevail", "drawn",
              (Within("share_below_mean", "start", 0.5, 1.0, pressures=AT_2MPA),)),
     Sentence("4.1, Fig. 7", "and strong ones fall off exponentially (our reading: scatter over mean of what exceeds "
-             "the mean force is 1 to a tenth)", "drawn", (Within("tail_variation", "start", 0.9, 1.1, pressures=AT_2MPA),),
+             "the mean force is 1 to a tenth)", "drawn",
+             (Within("tail_variation", "start", 0.9, 1.1, pressures=AT_2MPA),),
              "they fall off faster (1 is exponential, 0.76 half a normal distribution)"),
     Sentence("4.1, Fig. 7", "strong forces grow in number with strain", "0 → 121 (10 %)",
              grows("strong_forces", "start", "10 %")),
