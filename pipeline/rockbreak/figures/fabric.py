@@ -98,9 +98,10 @@ def polar_grid(roses, name, bars_of, fit_of, anisotropy, unit, scale=1.0):
     ticks = [tick for tick in MaxNLocator(3).tick_values(0, top) if 0 < tick <= top * 1.02]
     for panel in grid.ravel():
         panel.set(ylim=(0, 1.05 * top or 1.0))
-        panel.set_rticks(ticks, [unit.format(tick) for tick in ticks], fontsize=7.5, color=SOFT,
-                         path_effects=[withStroke(linewidth=2.5, foreground="white")])  # they stand on the bars
-        panel.set_rlabel_position(22)
+        panel.set_rticks(ticks, [""] * len(ticks))
+        for tick in ticks:  # labels of an axis would lie below the bars
+            panel.text(np.radians(22), tick, unit.format(tick), fontsize=7.5, color=INK, ha="center", va="center",
+                       path_effects=[withStroke(linewidth=2, foreground="white")])
         panel.set_xticks(np.radians([0, 45, 90, 135, 180, 225, 270, 315]),
                          ["0°", "", "90°", "", "", "", "", ""], fontsize=7.5, color=GREY)
         panel.tick_params(axis="x", pad=-2)
