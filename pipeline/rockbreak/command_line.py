@@ -4,8 +4,9 @@ import sys
 import time
 from pathlib import Path
 
-from .run.driver import Options, drive
 from .errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
+from .live import doing
+from .run.driver import Options, drive
 from .run.ledger import Ledger, read_ledger
 from .run.progress import make_progress
 from .run.results import Results
@@ -56,14 +57,18 @@ def run(arguments=None):
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
                         help="override a key of the scene, for example --set seed=2")
     parser.add_argument("--threads", type=positive, help="threads of dem and of xfem")
-    parser.add_argument("--no-report", action="store_true", help="write summary.json only, no report.html and no run.xdmf")
+    parser.add_argument("--no-report", action="store_true",
+                        help="write summary.json only, no report.html and no run.xdmf")
     options = parser.parse_args(arguments)
 
     def work():
+        progress = make_progress()
         directory = drive(Options(options.case, options.out, options.mode, options.resume, options.overrides,
-                                  options.threads), make_progress())
+                                  options.threads), progress)
         if not is_concluded(directory, with_report=not options.no_report):
-            conclude(directory, with_report=not options.no_report)
+            with progress:
+                progress.stage("summary" if options.no_report else "report")
+                conclude(directory, with_report=not options.no_report)
         print(directory.summary_file if options.no_report else directory.report_file)
 
     return guarded(parser.prog, work)
@@ -104,18 +109,20 @@ def report(arguments=None):
     parser.add_argument("directories", type=Path, nargs="+", metavar="DIR", help="run directories")
     parser.add_argument("--out", type=Path, help="file to write (default: report.html in DIR; comparison.html in the "
                         "first DIR if there are several)")
-    parser.add_argument("--figures", type=Path, metavar="FOLDER", help="every figure as SVG, PNG and CSV into a folder too")
+    parser.add_argument("--figures", type=Path, metavar="FOLDER",
+                        help="every figure as SVG, PNG and CSV into a folder too")
     options = parser.parse_args(arguments)
 
     def work():
         from .report.page import write_report
         runs = [Results(RunDirectory(path)) for path in options.directories]
-        for one in runs:
-            write_summary(one.directory, one.summary)
-            write_xdmf(one.directory)
         first = runs[0].directory
         target = options.out or (first.report_file if len(runs) == 1 else first.path / "comparison.html")
-        write_report(runs, target, options.figures)
+        with doing(f"report of {len(runs)} runs" if len(runs) > 1 else "report"):
+            for one in runs:
+                write_summary(one.directory, one.summary)
+                write_xdmf(one.directory)
+            write_report(runs, target, options.figures)
         print(target)
 
     return guarded(parser.prog, work)

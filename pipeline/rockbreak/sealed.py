@@ -1,6 +1,7 @@
 """The HDF5 files of `dem` and `xfem`, opened only where the seal at their end fits the bytes before it.
 
-HDF5 1.10 crashes, hangs or reads something else over damaged metadata; common/io/immutable_file.hpp says what the seal is.
+HDF5 1.10 crashes, hangs or reads something else over damaged metadata; common/io/immutable_file.hpp says what the seal
+is.
 """
 import h5py
 
@@ -33,8 +34,8 @@ def sealed_content(path):
         raise RockbreakError(IO_FAILURE, f"{path}: unreadable: {error.strerror}") from error
     image, seal = content[:-SEAL_BYTES], content[-SEAL_BYTES:]
     if not seal.startswith(MAGIC) or len(seal) < SEAL_BYTES:
-        raise RockbreakError(IO_FAILURE, f"{path}: unreadable: does not end with a checksum, as files of dem and xfem do; "
-                             "it was cut short or written by another program")
+        raise RockbreakError(IO_FAILURE, f"{path}: unreadable: does not end with a checksum, as files of dem and xfem "
+                             "do; it was cut short or written by another program")
     if seal != seal_of(image):
         raise RockbreakError(IO_FAILURE, f"{path}: unreadable: damaged, its bytes do not match the checksum at its end")
     return content

@@ -14,7 +14,9 @@ READERS = {"XDMF Reader": lambda name: simple.XDMFReader(FileNames=[name]),
 
 
 def leaves(data):
-    """The grids of nested blocks and pieces, in order."""
+    """The grids of nested blocks and pieces, in order; without those that a time does not have."""
+    if data is None:
+        return []
     if data.IsA("vtkMultiBlockDataSet"):
         return [leaf for i in range(data.GetNumberOfBlocks()) for leaf in leaves(data.GetBlock(i))]
     if data.IsA("vtkMultiPieceDataSet"):
@@ -39,13 +41,19 @@ def described(grid):
     return {"types": sorted({name for name, _ in cells}), "cells": [points for _, points in cells], "arrays": arrays}
 
 
+def block_names(data):
+    return [data.GetMetaData(i).Get(data.NAME()) for i in range(data.GetNumberOfBlocks())]
+
+
 def seen(reader):
     times = list(reader.TimestepValues)
-    steps = []
+    steps, names = [], []
     for time in times:
         reader.UpdatePipeline(time)
-        steps.append([described(grid) for grid in leaves(servermanager.Fetch(reader))])
-    return {"times": times, "steps": steps}
+        data = servermanager.Fetch(reader)
+        names.append(block_names(data))
+        steps.append([described(grid) for grid in leaves(data)])
+    return {"times": times, "names": names, "steps": steps}
 
 
 print(json.dumps({name: seen(reader(sys.argv[1])) for name, reader in READERS.items()}))

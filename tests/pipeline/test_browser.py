@@ -1,5 +1,5 @@
-"""The pages in a real browser: no network, no complaint, figures as in the catalogue, an animation that moves, tables and
-downloads that agree, widths of a laptop and of a telephone, print."""
+"""The pages in a real browser: no network, no complaint, figures as in the catalogue, an animation that moves, tables
+and downloads that agree, widths of a laptop and of a telephone, print."""
 import base64
 import csv
 import io
@@ -16,7 +16,8 @@ from rockbreak.report.page import write_report
 from rockbreak.run.results import Results
 from rockbreak.run.run_directory import RunDirectory
 
-pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="chromium is not installed (pipeline/setup --with-tests)")
+pytestmark = pytest.mark.skipif(browser.CHROMIUM is None,
+                                reason="chromium is not installed (pipeline/setup --with-tests)")
 
 TABLES = """Array.from(document.querySelectorAll("table")).map(table => ({
   name: table.id, href: table.parentElement.querySelector("a[download]").href,
@@ -33,8 +34,8 @@ def pages(tmp_path_factory):
     write_report(runs[:1], folder / "run.html")
     write_report(runs, folder / "comparison.html")
     (folder / "paper_table.html").write_text("<main><header>x</header><h2>At 2 MPa</h2><div class=\"card\"><table><tr>"
-                                             "<th>row</th><th>ours</th></tr><tr><td>a, \"b\"</td><td>1</td></tr></table>"
-                                             "</div></main>")
+                                             "<th>row</th><th>ours</th></tr><tr><td>a, \"b\"</td><td>1</td></tr>"
+                                             "</table></div></main>")
     plan = SimpleNamespace(out=folder, runs=[planned(run) for run in runs])
     write_campaign_report(SimpleNamespace(file=Path("sweep.yaml")), plan, {"sample": 3.0})
     return folder
@@ -125,8 +126,9 @@ def test_the_animation_draws_something_and_moves_on(pages, chromium):
         c.dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowRight"}));
         return [c.dataset.frame, c.getAttribute("aria-label"), s.getAttribute("aria-valuetext")]; })()""")
     assert stepped[0] == "3" and "3.8 %" in stepped[1] and "3.8 %" in stepped[2]
-    legends = chromium.value("""(() => { const s = document.querySelector("#animation select"); s.value = "displacement";
-        s.dispatchEvent(new Event("change")); return Array.from(document.querySelectorAll("[data-legend]"))
+    legends = chromium.value("""(() => { const s = document.querySelector("#animation select");
+        s.value = "displacement"; s.dispatchEvent(new Event("change"));
+        return Array.from(document.querySelectorAll("[data-legend]"))
         .filter(one => !one.hidden).map(one => one.dataset.legend); })()""")
     assert legends == ["displacement"]
 

@@ -16,7 +16,8 @@ from conftest import REPOSITORY
 from patience import patience
 from rockbreak.campaign import biaxial_test as kind
 from rockbreak.campaign.table import read_campaign
-from rockbreak.campaign.tables import numbers_of, scatter
+from rockbreak.campaign.report import paper_findings
+from rockbreak.campaign.tables import conditions_of, numbers_of, scatter
 from rockbreak.errors import RockbreakError
 from rockbreak.campaign.plan import make_plan
 from rockbreak.run.run_directory import RunDirectory, attributes, is_valid
@@ -146,6 +147,15 @@ def test_the_hash_covers_the_meaning_of_the_keys_alone(work):
     assert set(hashes(work.plan(set={"shear.axial_strain": 0.2}, axes={"seed": [1, 2]}))).isdisjoint(hashes(one))
 
 
+def test_what_only_breakage_sees_makes_no_other_run_of_one_without(work):
+    axes = {"variant": TWINS}
+    breakable, solid = hashes(work.plan(axes=axes))
+    for key in ({"material.m_i": 20}, {"breakage.interval": 0.01}):
+        other = hashes(work.plan(axes=axes, set=key))
+        assert other[1] == solid and other[0] != breakable
+    assert hashes(work.plan(axes=axes, set={"material.density": 2000}))[1] != solid
+
+
 def test_rows_that_mean_the_same_are_one_run(work):
     plan = work.plan(axes={"seed": [1, 2]}, runs=[{"name": "again", "seed": 2}])
     assert len(plan.runs) == 2
@@ -155,7 +165,7 @@ def test_rows_that_mean_the_same_are_one_run(work):
 def test_runs_share_the_sample_that_their_preparation_sees(work):
     plan = work.plan(axes={"seed": [1, 2], "variant": TWINS, "shear.strain_rate": [0.02, 0.01],
                            "material.m_i": [25, 20]})
-    assert len(plan.runs) == 16 and len(plan.samples()) == 2
+    assert len(plan.runs) == 12 and len(plan.samples()) == 2, "the rock is nothing to runs without breakage"
     assert {run.sample.out.name.rpartition("_")[0] for run in plan.runs} == {"seed-1", "seed-2"}
     denser = work.plan(axes={"seed": [1], "preparation.void_ratio": [0.3, 0.25], "material.density": [2500, 2000]})
     assert len(denser.samples()) == 4
@@ -194,6 +204,17 @@ def test_a_campaign_runs_once_and_then_only_what_is_new(work):
     assert work.run(axes={"seed": [1, 2, 3], "variant": TWINS}).returncode == 0
     assert work.calls() == ["dem --resume --until-frame 0", "dem --resume --serve", "dem --resume --serve"]
     assert len(work.rows()) == 6
+
+
+def test_a_directory_of_something_else_is_refused(work):
+    work.out.mkdir()
+    (work.out / "notes.txt").write_text("mine")
+    process = work.run(axes={"seed": [1]})
+    assert process.returncode == 2
+    assert "directory of something else (no campaign.jsonl or plan.json in it)" in process.err
+    assert [entry.name for entry in work.out.iterdir()] == ["notes.txt"]
+    process = work.run("--snakemake", axes={"seed": [1]})
+    assert process.returncode == 2 and [entry.name for entry in work.out.iterdir()] == ["notes.txt"]
 
 
 def test_one_that_fails_stops_no_other_and_is_tried_again(work):
@@ -253,6 +274,23 @@ def processes_of(folder):
     return found
 
 
+def test_conditions_are_called_as_the_figures_call_them(work):
+    plan = work.plan(axes={"variant": TWINS, "preparation.confining_pressure": ["0.5e6", "2e6"], "seed": [1, 2],
+                           "shear.strain_rate": [0.02, 0.01]})
+    assert [condition.label for condition in conditions_of(plan)][:3] == [
+        "breakable, 0.5 MPa, strain rate 0.02", "breakable, 0.5 MPa, strain rate 0.01",
+        "breakable, 2 MPa, strain rate 0.02"]
+
+
+def test_what_became_of_the_paper_is_told_first(tmp_path):
+    assert paper_findings(tmp_path) == []
+    (tmp_path / "paper_table.csv").write_text(
+        "confining_pressure,row,verdict\n500000,a,reproduced\n500000,b,not reproduced\n1e+06,a,reproduced\n"
+        '"",c,not decidable\n')
+    assert paper_findings(tmp_path) == ["3 numbers of the paper: 2 reproduced, 1 not reproduced",
+                                        "1 sentences of the paper: 1 not decidable"]
+
+
 def test_progress_is_json_lines_and_a_dry_run_writes_nothing(work):
     axes = {"seed": [1, 2]}
     process = work.run("--dry-run", axes=axes)
@@ -260,7 +298,7 @@ def test_progress_is_json_lines_and_a_dry_run_writes_nothing(work):
     assert lines == [["new", "sample"]] * 2 + [["new", "run"]] * 2 and not work.out.exists()
     process = work.run(axes=axes)
     events = [json.loads(line) for line in process.err.splitlines()]
-    assert {event["event"] for event in events} == {"job", "campaign"}
+    assert {event["event"] for event in events} == {"job", "campaign", "progress"}
     last = [event for event in events if event["event"] == "campaign"][-1]
     assert (last["runs"], last["done"], last["failed"]) == (2, 2, 0)
 

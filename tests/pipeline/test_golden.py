@@ -33,7 +33,8 @@ def test_a_laboratory_test_gives_the_golden_hashes(expected, tmp_path, name):
 @pytest.mark.parametrize("name", ["dem", "xfem"])
 def test_the_compiler_fuses_no_products_with_alternating_sums(name):
     """gcc 12 does so in spite of -ffp-contract=off; debug and release then disagree."""
-    code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", executable(name)], capture_output=True, text=True, check=True)
+    code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", executable(name)], capture_output=True, text=True,
+                          check=True)
     assert re.findall(r"\bvfm(?:addsub|subadd)\w+", code.stdout) == []
 
 

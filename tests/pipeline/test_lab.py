@@ -43,7 +43,8 @@ def rows_of(out):
 # -- planning
 
 def test_a_sweep_becomes_all_combinations_and_an_overridden_key_none(tmp_path):
-    file = write(tmp_path, "c.yaml", BLOCK + "sweep: {loading.confining_stress: [0.0, 4.0e+6], mesh.nodes: [75, 150]}\n")
+    file = write(tmp_path, "c.yaml",
+                 BLOCK + "sweep: {loading.confining_stress: [0.0, 4.0e+6], mesh.nodes: [75, 150]}\n")
     runs = plan_tests([file], tmp_path / "out", [])
     assert [run.name for run in runs] == [f"c confining_stress-{s} nodes-{n}" for s in ("0.0", "4.0e+6")
                                           for n in (75, 150)]
@@ -147,7 +148,8 @@ def test_a_rock_for_all_tests_and_the_directory_of_an_earlier_call(tmp_path):
 def test_an_interruption_leaves_what_was_finished_with_its_table(tmp_path):
     """The second test hangs: a fake xfem that sleeps on it."""
     real = os.environ.get("ROCKBREAK_BIN") or REPOSITORY / "build" / "release"
-    fake = write(tmp_path / "bin", "xfem", f'#!/bin/sh\ncase "$2" in *slow.yaml) sleep 60;; esac\nexec {real}/xfem "$@"\n')
+    fake = write(tmp_path / "bin", "xfem",
+                 f'#!/bin/sh\ncase "$2" in *slow.yaml) sleep 60;; esac\nexec {real}/xfem "$@"\n')
     fake.chmod(0o755)
     write(tmp_path / "tests", "fast.yaml", BLOCK)
     write(tmp_path / "tests", "slow.yaml", BLOCK)

@@ -52,8 +52,8 @@ def test_damaged_files_are_refused_made_anew_or_read_as_written_by_each_program(
 
 def test_a_call_that_fails_ends_the_run_with_the_name_of_its_file_and_nothing_half(tmp_path):
     sweep = Sweep(tmp_path, durability="every")
-    for name, kind, n in (("dem", "nospace", 2), ("dem", "again", 3), ("driver", "nospace", 4), ("xfem", "device", 4), ("driver", "nospace", 9),
-                          ("dem", "short", 12), ("xfem", "again", 2), ("xfem", "kill", 10)):
+    for name, kind, n in (("dem", "nospace", 2), ("dem", "again", 3), ("driver", "nospace", 4), ("xfem", "device", 4),
+                          ("driver", "nospace", 9), ("dem", "short", 12), ("xfem", "again", 2), ("xfem", "kill", 10)):
         assert sweep.one(name, kind, n, "resident")
     assert sweep.faults == [] and sum(sweep.counts.values()) == 8
 

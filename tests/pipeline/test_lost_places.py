@@ -1,5 +1,5 @@
-"""Run directories that fill up, cannot be written, vanish or have strange names: each failure names its file and ends with
-exit code 4, nothing half stands under a final name, and the resumed run is the uninterrupted one."""
+"""Run directories that fill up, cannot be written, vanish or have strange names: each failure names its file and ends
+with exit code 4, nothing half stands under a final name, and the resumed run is the uninterrupted one."""
 import os
 import shutil
 import signal
@@ -22,8 +22,8 @@ SCENE = REPOSITORY / "tests" / "robustness" / "golden" / "scene.yaml"
 OVERRIDES = ["shear.axial_strain=0.008"]
 LAST_KEPT = 2  # frame of a run that is to go on
 
-# $0 is a file system of its own, of $1 bytes; what follows runs twice: as long as it is full or read-only ($2), and after
-# that. Its messages and exit codes go to $3.first and $3.second, the run of $0 to $3.run at the end.
+# $0 is a file system of its own, of $1 bytes; what follows runs twice: as long as it is full or read-only ($2), and
+# after that. Its messages and exit codes go to $3.first and $3.second, the run of $0 to $3.run at the end.
 ON_ITS_OWN_DISK = """
 set -e; disk=$0; size=$1; state=$2; said=$3; from=$4; shift 4
 mount -t tmpfs -o size=$size none "$disk"
@@ -66,7 +66,7 @@ def cut(whole, out):
 def failed_rightly(code, said, reason, run):
     """Exit code, one line with a file and the reason, nothing half."""
     assert code == IO_FAILURE, said
-    assert any(reason in line and str(run) in line or reason in line and ".h5" in line for line in said.splitlines()), said
+    assert any(reason in line and (str(run) in line or ".h5" in line) for line in said.splitlines()), said
     assert "Traceback" not in said
     if run.exists():
         assert_whole_files(run)
@@ -89,8 +89,8 @@ class OwnDisk:
         process = subprocess.run([*space, "sh", "-c", ON_ITS_OWN_DISK, self.disk, size, state, self.said, start or "",
                                   *words], capture_output=True, text=True, check=False)
         if process.returncode != 0 and ("not permitted" in process.stderr or "denied" in process.stderr):
-            pytest.skip("the system lets nobody mount a file system of his own; the failing calls of test_lost.py and the "
-                        "limit on sizes below check what a full one does")
+            pytest.skip("the system lets nobody mount a file system of his own; the failing calls of test_lost.py and "
+                        "the limit on sizes below check what a full one does")
         assert process.returncode == 0, process.stderr
 
     def text(self, name):

@@ -1,5 +1,5 @@
-"""The real executables on slabs 1:170, whose fragments no mesh can stand for: the coupled run stops and says where, what it
-leaves is refused alone, and it goes on when told to."""
+"""The real executables on slabs 1:170, whose fragments no mesh can stand for: the coupled run stops and says where,
+what it leaves is refused alone, and it goes on when told to."""
 import json
 import subprocess
 
@@ -20,8 +20,8 @@ SCENE = ["effects=[friction,local_damping,energy_ledger,breakage]", "breakage.no
 
 def run(out, *overrides):
     words = [word for override in (*SCENE, *overrides) for word in ("--set", override)]
-    return subprocess.run([REPOSITORY / "pipeline" / "run", REPOSITORY / "tests/robustness/scenes/slivers.yaml", "--out",
-                           out, "--no-report", "--resume", *words],
+    return subprocess.run([REPOSITORY / "pipeline" / "run", REPOSITORY / "tests/robustness/scenes/slivers.yaml",
+                           "--out", out, "--no-report", "--resume", *words],
                           capture_output=True, text=True, check=False, timeout=patience(300))
 
 

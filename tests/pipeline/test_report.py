@@ -1,12 +1,14 @@
 """The page: it builds from one run and from several, holds what it shows, and asks nothing of a network."""
 import re
 import subprocess
+from types import SimpleNamespace
 
 import pytest
 
 import synthetic
 from conftest import REPOSITORY
 from rockbreak.figures.catalogue import CATALOGUE
+from rockbreak.report.page import title_of
 from rockbreak.report.tables import warnings
 
 
@@ -124,3 +126,11 @@ def test_warnings_that_differ_by_numbers_alone_are_told_once():
     assert warnings([Run]) == [
         ("r", "xfem: frame 1: 3 particles are out of balance by 1.5e-3 (and 1 more like it)"),
         ("r", "xfem: the servo saturated")]
+
+
+def test_names_make_a_title_as_long_as_it_can_be_read():
+    def named(*names):
+        return title_of([SimpleNamespace(name=name) for name in names])
+
+    assert named("a" * 80) == "a" * 80 and named("demo", "solid") == "demo / solid"
+    assert named("seed-1_breakable_confining_pressure-2.0e6", "seed-1_solid_confining_pressure-2.0e6") == "2 runs"

@@ -9,7 +9,8 @@ from rockbreak.campaign.jobs import Job, next_jobs, run_jobs
 
 
 def paper_like(durations, sample=10.0):
-    """Per pressure a sample, then a breakable run and a solid one: (jobs, seconds that each takes). The table's order."""
+    """Per pressure a sample, then a breakable run and a solid one: (jobs, seconds that each takes). Ordered as a
+    table."""
     jobs, seconds = [], {}
     for pressure, (breakable, solid) in durations.items():
         first = Job(f"sample {pressure}", [], None, effort=sample)

@@ -1,5 +1,5 @@
-"""Campaigns through Snakemake: the plan as rules, on this machine and through a `sbatch` that only pretends, and the same
-results as without."""
+"""Campaigns through Snakemake: the plan as rules, on this machine and through a `sbatch` that only pretends, and the
+same results as without."""
 import json
 import os
 import shutil

@@ -2,8 +2,7 @@
 from pathlib import Path
 
 from .study import read_study
-from ..campaign.command import add_campaign_arguments, print_plan, raise_failures, threads_each
-from ..campaign.carry_out import carry_out
+from ..campaign.command import add_campaign_arguments, finish, threads_each
 from ..campaign.tables import run_rows, write_csv
 from ..command_line import Parser, guarded
 from ..campaign.plan import joined, make_plan
@@ -21,13 +20,13 @@ def accuracy(arguments=None):
         study = read_study(options.study, options.overrides)
         plan = joined(options.out, [make_plan(subject.campaign, options.out, threads_each(options))
                                     for subject in study.subjects])
-        if options.dry_run:
-            print_plan(plan)
-            return
-        seconds = carry_out(plan, parser.prog, options.jobs)
-        write_csv(plan.out / "campaign.csv", run_rows(study.subjects[0].campaign, plan, seconds))
-        from .report import write_accuracy  # matplotlib is slow to load
-        print(write_accuracy(study, plan, seconds))
-        raise_failures(plan)
+        finish(plan, options, parser.prog, lambda seconds: pages(study, plan, seconds))
 
     return guarded(parser.prog, work, go_on="the same command")
+
+
+def pages(study, plan, seconds):
+    """Tables and pages; the path of accuracy.md."""
+    from .report import write_accuracy  # matplotlib is slow to load
+    write_csv(plan.out / "campaign.csv", run_rows(study.subjects[0].campaign, plan, seconds))
+    return write_accuracy(study, plan, seconds)

@@ -97,7 +97,7 @@ def mean_number(runs, key):
 
 
 def floors_of(ladders):
-    """Measure -> the largest change of the error that rounding alone makes, from the ladders that change nothing else."""
+    """Measure -> the largest change of the error by rounding alone, from the ladders that change nothing else."""
     found = {}
     for ladder in ladders:
         if ladder.knob.rounding_only:

@@ -31,8 +31,8 @@ A study of several bases, all of one kind, names them; each knob climbs its ladd
       key: breakage.initiation_radius
       subjects: [particle]                      # all, if none is named
       rungs: [0.2, 0.1, 0.05]
-      reference: {mesh.nodes: 2400}             # each rung is compared with itself under these keys, not with the first;
-                                                # or for some subjects alone: {particle: {mesh.nodes: 2400}}
+      reference: {mesh.nodes: 2400}             # each rung is compared with itself under these keys, not with the
+                                                # first; or for some subjects alone: {particle: {mesh.nodes: 2400}}
 """
 import re
 from dataclasses import dataclass, field

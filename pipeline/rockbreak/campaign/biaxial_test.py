@@ -72,11 +72,21 @@ def seen_by_preparation(key):
     return section not in UNSEEN_SECTIONS and key not in PLACES and (section != "material" or name in SEEN_OF_MATERIAL)
 
 
-def sample_case(case, base_case, shared_keys):
-    """What the preparation sees of a resolved scene; shared keys have the values of the base."""
-    seen = without(case, (*PLACES, *UNSEEN_SECTIONS))
+def breaks(case):
+    return "breakage" in (case.get("effects") or [])
+
+
+def without_rock(case):
+    """A scene without what only breakage sees."""
+    seen = without(case, ("breakage",))
     seen["material"] = {key: value for key, value in seen.get("material", {}).items() if key in SEEN_OF_MATERIAL}
     seen["effects"] = sorted(effect for effect in seen["effects"] if effect not in UNSEEN_EFFECTS)
+    return seen
+
+
+def sample_case(case, base_case, shared_keys):
+    """What the preparation sees of a resolved scene; shared keys have the values of the base."""
+    seen = without_rock(without(case, (*PLACES, *UNSEEN_SECTIONS)))
     for key in shared_keys:
         section, _, name = key.rpartition(".")
         (value_at(seen, section) if section else seen)[name] = value_at(base_case, key)
@@ -84,17 +94,18 @@ def sample_case(case, base_case, shared_keys):
 
 
 def identity(case, sample_hash):
-    """Hash of all that decides the results of a run."""
-    return hash_of([without(case, PLACES), sample_hash])
+    """Hash of all that decides the results of a run: without breakage, the rock does not."""
+    seen = without(case, PLACES)
+    return hash_of([seen if breaks(case) else without_rock(seen), sample_hash])
 
 
 def effort(case):
-    """How long a run takes from its sample, relative to others, so that long ones start first: particles times duration, and
-    more with breakage, the higher the pressure (3.2 times as long at 2 MPa, configs/biaxial_2MPa_breakable.yaml)."""
+    """How long a run takes from its sample, relative to others, so that long ones start first: particles times
+    duration, and more with breakage, the higher the pressure (3.2 times as long at 2 MPa in
+    configs/biaxial_2MPa_breakable.yaml)."""
     shear = case.get("shear") or {}
     duration = shear.get("axial_strain", 1.0) / shear.get("strain_rate", 1.0)
-    breakage = 1.1e-6 * (value_at(case, "preparation.confining_pressure") or 0.0) * (
-        "breakage" in (case.get("effects") or []))
+    breakage = 1.1e-6 * (value_at(case, "preparation.confining_pressure") or 0.0) * breaks(case)
     return (value_at(case, "assembly.particles") or 1) * duration * (1.0 + breakage)
 
 

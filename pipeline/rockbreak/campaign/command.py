@@ -9,6 +9,8 @@ from .carry_out import carry_out, exit_code
 from .tables import run_rows, write_csv
 from ..command_line import Parser, guarded, positive
 from ..errors import RockbreakError
+from ..live import doing
+from ..run.run_directory import check_ours
 from .plan import make_plan
 from .snakemake import tables_command, write_snakemake
 
@@ -23,8 +25,13 @@ def add_campaign_arguments(parser):
     parser.add_argument("--dry-run", action="store_true", help="print what would run, and run nothing")
 
 
+MARKS = ("campaign.jsonl", "plan.json")  # one of them stands in every directory of a campaign
+
+
 def threads_each(options):
     """Threads of each process: several at a time must not crowd each other out. Results do not depend on it."""
+    if options.threads is None and getattr(options, "snakemake", False):
+        return 1
     if options.threads is None and options.jobs > 1:
         return max(1, len(os.sched_getaffinity(0)) // options.jobs)
     return options.threads
@@ -43,28 +50,38 @@ def campaign(arguments=None):
     def work():
         table = read_campaign(options.campaign, options.overrides)
         plan = make_plan(table, options.out, threads_each(options))
-        if options.dry_run:
-            print_plan(plan)
-            return
-        if options.snakemake:
+        if options.snakemake and not options.dry_run:
+            check_ours(plan.out, parser.prog, MARKS)
             print(write_snakemake(plan, tables_command(options.campaign, options.out, options.overrides)))
             return
-        seconds = carry_out(plan, parser.prog, options.jobs)
-        conclude(table, plan, seconds)
+        finish(plan, options, parser.prog, lambda seconds: pages(table, plan, seconds))
 
     return guarded(parser.prog, work, go_on="the same command")
 
 
-def conclude(table, plan, seconds):
-    """Tables and pages, then the error that a failed run stands for."""
+def finish(plan, options, program, write_pages):
+    """Carries out a plan, or prints it for a dry run; prints the path that `write_pages` (user seconds of samples by
+    hash) returns; then raises the error that a failed run stands for."""
+    if options.dry_run:
+        print_plan(plan)
+        return
+    check_ours(plan.out, program, MARKS)
+    seconds = carry_out(plan, program, options.jobs)
+    with doing("tables and pages"):
+        page = write_pages(seconds)
+    print(page)
+    raise_failures(plan)
+
+
+def pages(table, plan, seconds):
+    """Tables and pages; the path of campaign.html."""
     from .report import write_campaign_report  # matplotlib is slow to load
     write_csv(plan.out / "campaign.csv", run_rows(table, plan, seconds))
     finished = [run.out for run in plan.runs if run.summary]
     if table.compare == "paper" and finished:
         from ..paper.table import write
         write(finished, plan.out)
-    print(write_campaign_report(table, plan, seconds))
-    raise_failures(plan)
+    return write_campaign_report(table, plan, seconds)
 
 
 def raise_failures(plan):

@@ -1,5 +1,5 @@
-"""Local processes of a campaign: at most so many at a time, each after the one that it needs; of those that could start,
-the one whose work, with what waits for it, takes longest. One that fails stops nobody but those that need it."""
+"""Local processes of a campaign: at most so many at a time, each after the one that it needs; of those that could
+start, the one whose work, with what waits for it, takes longest. One that fails stops nobody but those that need it."""
 import json
 import signal
 import time
@@ -11,6 +11,7 @@ from ..errors import Interrupted
 
 PAUSE = 0.05  # seconds between two looks at the processes
 QUIET_EVENTS = ("progress", "frame")  # not kept in the log
+SHEARED = 0.95  # of a run's way at its final strain; the rest is summary and report
 
 
 @dataclass
@@ -25,7 +26,8 @@ class Job:
     reason: str = ""
     user_seconds: float = 0.0
     started: float = 0.0
-    fraction: float = 0.0   # of its way to the final strain
+    fraction: float = 0.0   # of its way
+    began_at: float = 0.0   # fraction that stood there when it was started
     stage: str = ""
     said: list = field(default_factory=list)
     child: Child | None = None
@@ -34,9 +36,10 @@ class Job:
 
     def child_event(self, _, event):
         if event["event"] == "frame":
-            self.stage = "shear"
-            self.fraction = min(1.0, event["axial_strain"] / event["target_strain"]) if event.get(
-                "target_strain") else 0.0
+            share = min(1.0, event["axial_strain"] / event["target_strain"]) if event.get("target_strain") else 0.0
+            if self.stage != "shear":
+                self.began_at = SHEARED * share
+            self.stage, self.fraction = "shear", SHEARED * share
         elif event["event"] == "progress":
             self.stage = event.get("stage", self.stage)
         if event["event"] not in QUIET_EVENTS:
@@ -52,9 +55,12 @@ class Job:
 
     # -- its life
 
+    def never_started(self):
+        return self.child is None and self.state == "failed"
+
     def start(self, lock):
         self.log.parent.mkdir(parents=True, exist_ok=True)
-        self.state, self.started = "running", time.monotonic()
+        self.state, self.stage, self.started = "running", "starting", time.monotonic()
         self.child = Child(self.name, self.command[1:], lock, self, program=self.command[0])
 
     def poll(self):

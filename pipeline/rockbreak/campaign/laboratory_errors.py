@@ -147,12 +147,12 @@ def far_from(points, loads, radius):
 
 
 def disc_stress(points, radius, arc=0.0):
-    """Plane stress field of a disc under two opposite forces of 1 N/m at its top and bottom, compression positive: points,
-    or even vertical tractions over arcs of this length (Hondros 1959 has the normal ones).
+    """Plane stress field of a disc under two opposite forces of 1 N/m at its top and bottom, compression positive:
+    points, or even vertical tractions over arcs of this length (Hondros 1959 has the normal ones).
 
-    Two collinear forces on the rim: two half-plane fields of point forces, and the uniform tension that clears the rim of
-    the normal components of the forces (Timoshenko & Goodier, Theory of Elasticity, section 41); an arc is the sum of
-    such pairs, by Gauss's rule."""
+    Two collinear forces on the rim: two half-plane fields of point forces, and the uniform tension that clears the rim
+    of the normal components of the forces (Timoshenko & Goodier, Theory of Elasticity, section 41); an arc is the sum
+    of such pairs, by Gauss's rule."""
     angles, weights = [0.0], [1.0]
     if arc > 0:
         angles, weights = np.polynomial.legendre.leggauss(24)
@@ -164,7 +164,8 @@ def disc_stress(points, radius, arc=0.0):
             depth = top - side * points[:, 1]  # from the load, inwards
             r2 = x * x + depth * depth
             radial = weight * 2 / math.pi * depth / r2  # compression along the ray from the load
-            total += np.column_stack([radial * x * x / r2, radial * depth * depth / r2, -side * radial * x * depth / r2])
+            total += np.column_stack([radial * x * x / r2, radial * depth * depth / r2,
+                                      -side * radial * x * depth / r2])
         total[:, :2] -= weight * math.cos(angle) / (math.pi * radius)
     return total
 

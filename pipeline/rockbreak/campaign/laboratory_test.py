@@ -35,8 +35,8 @@ COSTS = (  # heading, column of accuracy.csv, number of the summary, factor; err
     ("elements", "elements", "mesh.elements", 1),
 )
 COST_AXIS, COST_UNIT = "CPU time per particle [ms]", "ms"
-COST_NOTE = ("Time per particle: CPU time of a thread for the set-up of a new particle (mesh, factor, averages) and one "
-             "analysis, which is the mean over the test's load levels; median of three runs.")
+COST_NOTE = ("Time per particle: CPU time of a thread for the set-up of a new particle (mesh, factor, averages) and "
+             "one analysis, which is the mean over the test's load levels; median of three runs.")
 TOTAL = "seconds"
 REPEATS = 3  # of which the times are the medians
 THEORY_NOTE = ", or from theory where a test has one (then the first rung has an error too)"

@@ -1,8 +1,11 @@
-"""campaign.html and campaign.md: what a campaign found, one look over all of its runs. The page holds the catalogue's
-figures of all finished runs (the paper's among them), trends against the campaign's axes, and the paper's table."""
+"""campaign.html and campaign.md: what a campaign found, one look over all of its runs. First conditions, what became of
+the paper's numbers and sentences, and trends against the campaign's axes; then the catalogue's figures of all finished
+runs (the paper's among them) and the paper's table."""
+import csv
 import os
 import re
 import shlex
+from collections import Counter
 
 from matplotlib.figure import Figure
 
@@ -29,11 +32,13 @@ def write_campaign_report(campaign, plan, sample_seconds):
     commands = [shlex.join(run.command) for run in plan.runs]
     seconds = {"runs": sum(run.summary.get("cpu_seconds") or 0 for run in plan.runs if run.summary),
                "samples": sum(sample_seconds.values())}
-    write_text(plan.out / "campaign.md", markdown(title, plan, conditions, runs, failed, commands, seconds))
+    findings = paper_findings(plan.out)
+    write_text(plan.out / "campaign.md", markdown(title, plan, conditions, runs, failed, commands, seconds, findings))
     sections, paper = all_sections(plan), paper_section(plan.out)
     page = {
         "title": title, "plan": plan, "failed": failed, "commands": commands, "seconds": seconds,
         "done": sum(run.summary is not None for run in plan.runs), "sections": sections, "paper": paper,
+        "findings": findings,
         "contents": contents(sections, (("conditions", "Conditions"),), (
             *((("paper", "Beside the paper"),) if paper else ()), ("runs", "Runs"), ("commands", "Commands"))),
         "conditions": table("conditions", *conditions), "runs": table("runs", *runs),
@@ -52,11 +57,27 @@ def paper_section(out):
     return re.sub(r"<(/?)h2>", r"<\1h3>", text)
 
 
-def markdown(title, plan, conditions, runs, failed, commands, seconds):
+def paper_findings(out):
+    """Lines that say how many of the paper's numbers and sentences are reproduced; none if the campaign has no
+    paper_table.csv. There a number has the pressure of its runs, a sentence none."""
+    file = out / "paper_table.csv"
+    if not file.exists():
+        return []
+    found = {"numbers": Counter(), "sentences": Counter()}
+    with open(file, encoding="utf-8", newline="") as content:
+        for row in csv.DictReader(content):
+            found["numbers" if row["confining_pressure"] else "sentences"][row["verdict"]] += 1
+    return [f"{sum(counts.values())} {what} of the paper: " + ", ".join(
+        f"{count} {verdict}" for verdict, count in counts.most_common()) for what, counts in found.items() if counts]
+
+
+def markdown(title, plan, conditions, runs, failed, commands, seconds, findings):
     done = sum(run.summary is not None for run in plan.runs)
     parts = [f"# {title}", f"{done} of {len(plan.runs)} runs done, {len(failed)} failed. User seconds of dem and xfem: "
              f"{seconds['runs']:.0f} for the runs, {seconds['samples']:.0f} for the prepared samples. All numbers: "
              "`campaign.csv`."]
+    if findings:
+        parts.append("\n".join(f"- {finding}" for finding in findings))
     if failed:
         parts += ["## Failed", "\n".join(f"- `{run.name}` (exit code {run.code}): {run.failure}" for run in failed)]
     parts += ["## Conditions", "Mean ± standard deviation over the seeds.", markdown_table(*conditions),
@@ -66,14 +87,14 @@ def markdown(title, plan, conditions, runs, failed, commands, seconds):
 
 
 def all_sections(plan):
-    """The catalogue's figures, then a figure for each numeric axis."""
+    """A figure for each numeric axis, then the catalogue's figures."""
     conditions = [condition for condition in conditions_of(plan) if any(run.summary for run in condition.runs)]
     finished = [Results(RunDirectory(run.out)) for run in plan.runs if run.summary]
     sections = figure_sections(select(finished)) if 0 < len(conditions) <= MOST_CURVES else []
     drawn = [drawing(f"trend-{axis}", f"Against {axis.rpartition('.')[2].replace('_', ' ')}",
                      "A mark per run; lines join the means.", trends(conditions, axis))
              for axis in numeric_axes(conditions)]
-    return sections + ([{"name": "trends", "title": "Trends", "figures": drawn}] if drawn else [])
+    return ([{"name": "trends", "title": "Trends", "figures": drawn}] if drawn else []) + sections
 
 
 def as_number(text):

@@ -1,4 +1,4 @@
-"""A plan for Snakemake, for campaigns that outgrow one machine: DIR/plan.json, and beside it the Snakefile that reads it.
+"""A plan for Snakemake, for campaigns that outgrow one machine: DIR/plan.json, beside it the Snakefile that reads it.
 
 Every sample and every run is a rule whose command is the one that `pipeline/campaign` itself would start; what a rule
 makes is what `pipeline/campaign` takes for finished. The last rule is `pipeline/campaign` itself, which then finds all
@@ -16,8 +16,8 @@ SNAKEFILE = Path(__file__).resolve().with_name("Snakefile")
 
 
 def write_snakemake(plan, tables_command):
-    """Writes DIR/Snakefile and DIR/plan.json; returns the Snakefile's path. The commands start where this process did, so
-    that relative names mean what they meant."""
+    """Writes DIR/Snakefile and DIR/plan.json; returns the Snakefile's path. The commands start where this process did,
+    so that relative names mean what they meant."""
     make_folder(plan.out / "logs")
     content = {"jobs": planned_jobs(plan), "tables": started_here(tables_command)}
     write_text(plan.out / "plan.json", json.dumps(content, indent=1) + "\n")

@@ -69,14 +69,20 @@ class Condition:
         return [value for value in found if value is not None]
 
 
+def axis_text(axis, label):
+    """What one key of a row is set to, in words; a pressure as in the figures."""
+    if axis.endswith("confining_pressure"):
+        return f"{1e-6 * float(label):g} MPa"
+    return f"{axis.rpartition('.')[2].replace('_', ' ')} {label}"
+
+
 def conditions_of(plan):
     found = {}
     for run in plan.runs:
         variation = run.variations[0]
         labels = {axis: label for axis, label in variation.labels if axis != "seed"}
         words = [variation.title] if variation.title else [
-            f"{axis.rpartition('.')[2].replace('_', ' ')} {label}" if axis in dict(variation.keys) else label
-            for axis, label in labels.items()]
+            axis_text(axis, label) if axis in dict(variation.keys) else label for axis, label in labels.items()]
         label = ", ".join(words) or "base"
         found.setdefault(label, Condition(label, labels, [])).runs.append(run)
     return list(found.values())

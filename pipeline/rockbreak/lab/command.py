@@ -6,19 +6,19 @@ from ..campaign.progress import Tally, make_campaign_progress
 from ..run.child import executable
 from ..command_line import Parser, guarded, positive
 from ..run.driver import catch_signals
-from ..errors import BAD_INPUT, RockbreakError
+from ..errors import RockbreakError
 from ..campaign.jobs import Job, run_jobs
 from .table import table_rows, text_table, write_table
 from .tests import plan_tests
-from ..run.run_directory import lock_directory
+from ..run.run_directory import check_ours, lock_directory
 
 TABLE = "lab.csv"
 
 
 def lab(arguments=None):
     parser = Parser(prog="pipeline/lab", description="Laboratory tests of single specimens against theory. Writes "
-                    "lab.csv, lab.html, lab.md and, per test, summary.json, result.h5, specimen.svg, case.yaml; prints the "
-                    "table. All tests run anew; in an --out of its own it replaces those that it runs. A test that "
+                    "lab.csv, lab.html, lab.md and, per test, summary.json, result.h5, specimen.svg, case.yaml; prints "
+                    "the table. All tests run anew; in an --out of its own it replaces those that it runs. A test that "
                     "fails stops no other, and what was finished when it is interrupted stays, with its table.")
     parser.add_argument("tests", type=Path, nargs="+", metavar="DIR_OR_FILE", help="for example configs/lab")
     parser.add_argument("--out", type=Path, required=True, help="directory of the results")
@@ -29,7 +29,7 @@ def lab(arguments=None):
 
     def work():
         runs = plan_tests(options.tests, options.out, options.overrides)
-        check_directory(options.out)
+        check_ours(options.out, parser.prog, [TABLE])
         try:
             carry_out(runs, options, parser.prog)
         finally:
@@ -42,15 +42,6 @@ def lab(arguments=None):
         raise_failures(runs)
 
     return guarded(parser.prog, work, go_on="the same command")
-
-
-def check_directory(out):
-    """Refuses a directory that holds something else than laboratory tests."""
-    if out.is_file():
-        raise RockbreakError(BAD_INPUT, f"{out}: found a file, expected a directory")
-    if out.is_dir() and any(entry.name != ".lock" for entry in out.iterdir()) and not (out / TABLE).exists():
-        raise RockbreakError(BAD_INPUT, f"{out}: found a directory of something else (no {TABLE} in it), expected a new "
-                             "one or that of an earlier pipeline/lab")
 
 
 def carry_out(runs, options, program):

@@ -15,6 +15,7 @@ from ..style import GENERATION_COLORS, png_bytes, sequence, svg_document, svg_te
 TEMPLATES = Path(__file__).resolve().parent / "templates"
 PNG_DPI = 130
 DISPLACEMENT_SHADES = 10  # of the animation
+LONGEST_TITLE = 60  # characters
 FILM = ("film", "The test in motion")
 LAST_SECTIONS = (("summary", "All numbers"), ("warnings", "Warnings"), ("configuration", "Configuration"))
 
@@ -30,7 +31,7 @@ def write_report(runs, target, figures=None):
     verdicts = worst_checks(runs) if several else checks(runs)
     shown_film = film(runs[0]) if not several else None
     page = {
-        "title": " / ".join(run.name for run in runs) if len(runs) <= 4 else f"{len(runs)} runs",
+        "title": title_of(runs),
         "subtitle": subtitle(selection),
         "incomplete": [run.name for run in runs if not run.summary["complete"]],
         "tiles": headline(runs[0]) if not several else [],
@@ -47,6 +48,12 @@ def write_report(runs, target, figures=None):
         "cases": [(run.name, run.directory.case_file.read_text(encoding="utf-8")) for run in runs],
     }
     write_text(target, render("report.html.j2", page))
+
+
+def title_of(runs):
+    """The runs' names, as long as they make a title."""
+    names = " / ".join(run.name for run in runs)
+    return names if len(runs) == 1 or len(names) <= LONGEST_TITLE else f"{len(runs)} runs"
 
 
 def contents(sections, before=(), after=()):

@@ -14,7 +14,9 @@ from ..errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
 from .programs import OneShotDem, OneShotXfem, ResidentDem, ResidentXfem
-from .run_directory import RunDirectory, attributes, broken_in, is_valid, make_folder, open_written, refusals_of
+from .run_directory import (RunDirectory, attributes, broken_in, is_valid, make_folder, open_written, refusals_of,
+                            state_of)
+from ..sealed import open_sealed
 
 
 @dataclass
@@ -103,6 +105,7 @@ class Run:
         if newest is not None:
             self._learn_case()
             self._register_unknown(newest)
+            self._tell(newest)
             self._solve_missing(newest)
             if self._is_final(newest):
                 return
@@ -172,12 +175,18 @@ class Run:
 
     def _register_frame(self, k, dem_seconds):
         with open_written(self.directory.frame_file(k), "frame") as (file, written):
-            state = {"frame": k, "step": int(file.attrs["step"]), "axial_strain": float(file.attrs["axial_strain"]),
-                     "particles": len(file["particles/id"]), "contacts": len(file["contacts/a"])}
-            final = bool(file.attrs["final"])
+            state, final = state_of(k, file), bool(file.attrs["final"])
         self._ledger.write("frame", **state, final=final, **written, seconds={"dem": round(dem_seconds, 6)})
-        self._progress.frame({**state, "broken": self._broken, "target_strain": self._target_strain})
+        self._show(state)
         return final
+
+    def _tell(self, newest):
+        """Where a resumed run stands."""
+        with open_sealed(self.directory.frame_file(newest)) as file:
+            self._show(state_of(newest, file))
+
+    def _show(self, state):
+        self._progress.frame({**state, "broken": self._broken, "target_strain": self._target_strain})
 
     def _register_split(self, k, waited, handover):
         if not self._breakable:

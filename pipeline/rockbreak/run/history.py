@@ -6,19 +6,29 @@ from ..sealed import open_sealed
 
 
 def read_history(directory):
-    """Columns from the prepared state on: the last row of frame 0 (axial strain 0), then every row of later frames.
-
-    A column that only some frames have is left out.
-    """
+    """The history of all frames (see `joined`)."""
     parts = []
     for k in directory.frame_numbers():
         path = directory.frame_file(k)
         try:
             with open_sealed(path) as file:
-                rows = {name: column[:] for name, column in file["history"].items()}
+                parts.append(rows_of(file))
         except (OSError, KeyError) as error:
             raise RockbreakError(BAD_INPUT, f"{path}: no readable history: {error}") from error
-        parts.append({name: values[-1:] for name, values in rows.items()} if not parts else rows)
+    return joined(parts)
+
+
+def rows_of(frame):
+    """Column -> rows since the frame before, of an open file."""
+    return {name: column[:] for name, column in frame["history"].items()}
+
+
+def joined(parts):
+    """Columns from the prepared state on: the last row of the first frame (axial strain 0), every row of later ones.
+
+    A column that only some frames have is left out.
+    """
+    parts = [{name: values[-1:] for name, values in part.items()} for part in parts[:1]] + parts[1:]
     common = set.intersection(*(set(part) for part in parts)) if parts else set()
     return {name: np.concatenate([part[name] for part in parts]) for name in sorted(common)}
 

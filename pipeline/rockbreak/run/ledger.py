@@ -1,6 +1,7 @@
 """run.jsonl: one JSON object per line and event, appended and flushed at once.
 
-Events are `start`, `frame`, `split`, `warning`, `end`, `summary` and `report`; each has `event` and `time` (Unix seconds).
+Events are `start`, `frame`, `split`, `warning`, `end`, `summary` and `report`; each has `event` and `time` (Unix
+seconds).
 """
 import contextlib
 import json

@@ -1,5 +1,5 @@
-"""The two programs as the driver sees them, in either mode: it gives an order (`begin`, `proceed`, `ask`), has its own work
-to do, and then waits for what came of it (`frame`, `answer`)."""
+"""The two programs as the driver sees them, in either mode: it gives an order (`begin`, `proceed`, `ask`), has its own
+work to do, and then waits for what came of it (`frame`, `answer`)."""
 import re
 
 from ..errors import IO_FAILURE, RockbreakError

@@ -1,21 +1,8 @@
 """What a run shows while it works: one live line on a terminal, JSON lines otherwise. Both on stderr."""
-import json
-import sys
 import time
 
-from rich.console import Console
-from rich.live import Live
-from rich.text import Text
-
+from ..live import JsonLines, LiveDisplay, bar, for_stderr, line, time_text
 from .ledger import kind_of
-
-
-def time_text(seconds):
-    if seconds is None:
-        return "?"
-    minutes, seconds = divmod(int(round(seconds)), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
 
 
 class TimeLeft:
@@ -33,27 +20,20 @@ class TimeLeft:
         return max(0.0, (target - s1) * (t1 - t0) / (s1 - s0))
 
 
-class JsonProgress:
-    """One JSON object per line: every frame, every event of the children, but their progress at most once a second."""
+class JsonProgress(JsonLines):
+    """Every frame, every event of the children, but their progress at most once a second."""
 
     def __init__(self, stream=None):
-        self._stream = stream or sys.stderr
+        super().__init__(stream)
         self._time_left = TimeLeft()
         self._last_progress = -1.0
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def _print(self, event):
-        self._stream.write(json.dumps(event) + "\n")
-        self._stream.flush()
-
     def frame(self, state):
         left = self._time_left(state["axial_strain"], state["target_strain"])
-        self._print({"event": "frame", **state, "seconds_left": None if left is None else round(left, 1)})
+        self.write({"event": "frame", **state, "seconds_left": None if left is None else round(left, 1)})
+
+    def stage(self, name):
+        self.write({"source": "driver", "event": "progress", "stage": name})
 
     def child_event(self, name, event):
         if event["event"] == "progress":
@@ -61,61 +41,43 @@ class JsonProgress:
             if now - self._last_progress < 1.0:
                 return
             self._last_progress = now
-        self._print({"source": name, **event})
-
-    def message(self, text):
-        self._stream.write(text + "\n")
-        self._stream.flush()
+        self.write({"source": name, **event})
 
 
-class TerminalProgress:
+class TerminalProgress(LiveDisplay):
     """A live line with strain, contacts, particles, broken and the time left; messages scroll above it."""
 
     BAR = 10
     PREPARATION = ("step", "void_ratio", "friction", "contacts")  # what fits into 80 columns
 
     def __init__(self):
-        self._console = Console(stderr=True)
-        self._live = Live(Text("starting"), console=self._console, refresh_per_second=8, transient=True)
+        super().__init__(refresh_per_second=8)
         self._time_left = TimeLeft()
         self._warned = set()
-        self._start = time.monotonic()
-
-    def __enter__(self):
-        self._live.__enter__()
-        return self
-
-    def __exit__(self, *args):
-        self._live.__exit__(*args)
 
     def frame(self, state):
         strain, target = state["axial_strain"], state["target_strain"]
         left = self._time_left(strain, target)
-        done = 0 if not target else min(1.0, strain / target)
-        filled = int(done * self.BAR)
-        parts = [("strain ", "bold"), ("━" * filled, "cyan"), ("━" * (self.BAR - filled), "bright_black"),
+        parts = [("strain ", "bold"), *bar(min(1.0, strain / target) if target else 0, self.BAR),
                  f" {strain:.1%}  {state['contacts']} contacts  {state['particles']} particles"]
         if state["broken"] is not None:
             parts.append(f"  {state['broken']} broken")
-        parts.append((f"  {time_text(left)} left", "bright_black"))
-        self._live.update(Text.assemble(*parts, no_wrap=True, overflow="ellipsis"))
+        self.show(line(*parts, (f"  {time_text(left)} left", "bright_black")))
+
+    def stage(self, name, fields=()):
+        self.show(line((f"{name}  ", "bold"), "  ".join(fields), (f"  {self.elapsed()}", "bright_black")))
 
     def child_event(self, name, event):
         if event["event"] == "progress" and event.get("stage") != "shear":
-            fields = [f"{key.replace('_', ' ')} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
-                      for key, value in event.items() if key in self.PREPARATION]
-            elapsed = time_text(time.monotonic() - self._start)
-            self._live.update(Text.assemble((f"{event.get('stage', name)}  ", "bold"), "  ".join(fields),
-                                            (f"  {elapsed}", "bright_black"), no_wrap=True, overflow="ellipsis"))
+            self.stage(event.get("stage", name), [
+                f"{key.replace('_', ' ')} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
+                for key, value in event.items() if key in self.PREPARATION])
         elif event["event"] == "warning":
             text = f"{name}: warning: {event.get('text', '')}"
             if kind_of(text) not in self._warned:  # the others like it are in run.jsonl
                 self._warned.add(kind_of(text))
                 self.message(text)
 
-    def message(self, text):
-        self._console.print(text, markup=False, highlight=False)
-
 
 def make_progress():
-    return TerminalProgress() if sys.stderr.isatty() else JsonProgress()
+    return for_stderr(TerminalProgress, JsonProgress)

@@ -5,9 +5,9 @@ import numpy as np
 
 from ..errors import BAD_INPUT, RockbreakError
 from ..measures.fabric import frame_anisotropies
-from .history import read_history
+from .history import joined, rows_of
 from .ledger import read_ledger
-from .run_directory import broken_in, plain, refusals_in
+from .run_directory import broken_in, refusals_in, state_of
 from ..sealed import open_sealed
 
 
@@ -29,12 +29,17 @@ class Results:
         return self.directory.breaks_particles()
 
     @cached_property
-    def frames(self):
-        return frame_table(self.directory)
+    def _frames_and_history(self):
+        return read_frames(self.directory)
 
-    @cached_property
+    @property
+    def frames(self):
+        """A row per frame: number, step, axial strain, particles, contacts, solid area [m^2] and the final flag."""
+        return self._frames_and_history[0]
+
+    @property
     def history(self):
-        return read_history(self.directory)
+        return self._frames_and_history[1]
 
     @cached_property
     def broken(self):
@@ -73,27 +78,25 @@ class Results:
         return self._anisotropies[k]
 
 
-def frame_table(directory):
-    """Number, step, axial strain, particles, contacts, solid area [m^2] and the final flag of every frame."""
+def read_frames(directory):
+    """The table and the history of all frames, each file opened once."""
     if not directory.path.is_dir():
         raise RockbreakError(BAD_INPUT, f"{directory.path}: no such directory; expected a run directory")
     numbers = directory.frame_numbers()
     if not numbers:
         raise RockbreakError(BAD_INPUT, f"{directory.path}: found no frames/*.h5; expected a run directory with at "
                              "least one frame")
-    table = []
+    table, history = [], []
     for k in numbers:
         path = directory.frame_file(k)
         try:
             with open_sealed(path) as file:
-                root = {key: plain(file.attrs[key]) for key in ("step", "axial_strain", "final")}
-                table.append({"frame": k, "step": int(root["step"]), "axial_strain": float(root["axial_strain"]),
-                              "final": bool(root["final"]), "particles": len(file["particles/id"]),
-                              "contacts": len(file["contacts/a"]),
+                table.append({**state_of(k, file), "final": bool(file.attrs["final"]),
                               "solid_area": float(np.sum(file["particles/area"][:]))})
+                history.append(rows_of(file))
         except (KeyError, OSError) as error:
             raise RockbreakError(BAD_INPUT, f"{path}: not a complete frame: {error}") from error
-    return table
+    return table, joined(history)
 
 
 def nearest(frames, strain):

@@ -91,8 +91,8 @@ class RunDirectory:
 
 
 def lock_directory(path, program, holders=None):
-    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the returned
-    file holds the lock until it and all its heirs are closed."""
+    """Takes a directory for `program`, which it may share with no other of its `holders` (default: itself); the
+    returned file holds the lock until it and all its heirs are closed."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         file = open(path / ".lock", "w", encoding="utf-8")
@@ -107,6 +107,16 @@ def lock_directory(path, program, holders=None):
                              "wait for it, or choose another --out") from None
     os.set_inheritable(file.fileno(), True)
     return file
+
+
+def check_ours(out, program, marks):
+    """Refuses to mix results of `program` with something else: a directory of its own holds one of `marks`."""
+    if out.is_file():
+        raise RockbreakError(BAD_INPUT, f"{out}: found a file, expected a directory")
+    if out.is_dir() and any(entry.name != ".lock" for entry in out.iterdir()) and not any(
+            (out / mark).exists() for mark in marks):
+        raise RockbreakError(BAD_INPUT, f"{out}: found a directory of something else (no {' or '.join(marks)} in it), "
+                             f"expected a new one or that of an earlier {program}")
 
 
 def write_text(path, text):
@@ -137,6 +147,12 @@ def attributes(path):
         return {key: plain(value) for key, value in file.attrs.items()}
 
 
+def state_of(k, frame):
+    """Where a run stood at frame k, an open file."""
+    return {"frame": k, "step": int(frame.attrs["step"]), "axial_strain": float(frame.attrs["axial_strain"]),
+            "particles": len(frame["particles/id"]), "contacts": len(frame["contacts/a"])}
+
+
 def plain(value):
     if isinstance(value, bytes):
         return value.decode()
@@ -154,8 +170,8 @@ def is_valid(path):
 
 @contextmanager
 def open_written(path, kind):
-    """(open file, what the ledger keeps of it: name in its folder, size, payload hash, hash of the whole file) of a frame
-    or split that has just been written; it is read once."""
+    """(open file, what the ledger keeps of it: name in its folder, size, payload hash, hash of the whole file) of a
+    frame or split that has just been written; it is read once."""
     content = sealed_content(path)
     try:
         with h5py.File(path, "r") as file:

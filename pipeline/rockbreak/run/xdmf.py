@@ -1,12 +1,13 @@
 """run.xdmf: a run as ParaView sees it. Light data only: it refers to frames/*.h5, splits/*.h5 and, for what those do
-not hold, to paraview/*.h5 (paraview_arrays.py). Every frame has three blocks:
+not hold, to paraview/*.h5 (paraview_arrays.py). Three blocks, each with a grid per frame:
 
   particles     polygons; id, root, generation, ..., displacement, stress_xx, ...; with breakage status, ...
   contacts      points; force on b, its normal and shear part
   force_chains  lines between the centroids of the two particles of a contact; its forces again
 
 Times are the frames'. The file keeps to what all three XDMF readers of ParaView 5.11 (Debian 12) understand: no
-hyperslabs, no functions, explicit connectivity.
+hyperslabs, no functions, explicit connectivity. A collection over time for each block, not a block for each time, gives
+the blocks names that do not change with time in the one reader that knows names (XDMF Reader).
 """
 from contextlib import ExitStack
 
@@ -17,6 +18,7 @@ from ..sealed import open_sealed
 from .paraview_arrays import SCHEMA, arrays_of, file_image
 from .run_directory import make_folder, plain, write_text, write_whole
 
+BLOCKS = ("particles", "contacts", "force_chains")
 KINDS = {"i": "Int", "u": "UChar", "f": "Float"}  # by numpy's kind; the unsigned ones of a frame have 8 bits
 OF_PARTICLES = ("id", "root", "generation", "boundary", "area")
 OF_SPLITS = ("status", "failure_mode")  # safety factors can be infinite, which no colour scale shows
@@ -31,19 +33,26 @@ def write_xdmf(directory):
     make_folder(folder)
     numbers = directory.frame_numbers()
     forms = {}
-    grids = [frame_grid(directory, k, forms) for k in numbers]
+    grids = [frame_grids(directory, k, forms) for k in numbers]
     for file in folder.glob("*.h5"):
         if not (file.stem.isdigit() and int(file.stem) in numbers):
             file.unlink()
     write_text(directory.xdmf_file, "\n".join([
         '<?xml version="1.0" encoding="utf-8"?>', '<Xdmf Version="3.0">', "<Domain>",
-        '<Grid Name="run" GridType="Collection" CollectionType="Temporal">', *grids, "</Grid>", "</Domain>", "</Xdmf>",
-        ""]))
+        *(over_time(name, [one[name] for one in grids if name in one]) for name in BLOCKS),
+        "</Domain>", "</Xdmf>", ""]))
     return directory.xdmf_file
 
 
-def frame_grid(directory, k, forms):
-    """The XML of frame k; `forms` remembers types and shapes of datasets, all but the length, from frame to frame."""
+def over_time(name, grids):
+    """The collection of a block, nothing if no frame has it."""
+    return "\n".join([f'<Grid Name="{name}" GridType="Collection" CollectionType="Temporal">', *grids, "</Grid>"]
+                     if grids else [])
+
+
+def frame_grids(directory, k, forms):
+    """Block -> XML of frame k; `forms` remembers types and shapes of datasets, all but the length, from frame to
+    frame."""
     with ExitStack() as opened:
         def open_one(path):
             return opened.enter_context(open_sealed(path))
@@ -53,9 +62,10 @@ def frame_grid(directory, k, forms):
                 split = open_one(directory.split_file(k))
                 split = split if split.attrs["frame_hash"] == frame.attrs["payload_hash"] else None
             made = made_arrays(directory.path / "paraview" / f"{k:06d}.h5", frame, split)
-            return collection(k, frame, split, made, forms)
+            return blocks_of(k, frame, split, made, forms)
         except (OSError, KeyError) as error:
-            raise RockbreakError(IO_FAILURE, f"{directory.frame_file(k)}, or its split: not complete: {error}") from error
+            raise RockbreakError(IO_FAILURE,
+                                 f"{directory.frame_file(k)}, or its split: not complete: {error}") from error
 
 
 def made_arrays(path, frame, split):
@@ -73,8 +83,9 @@ def made_arrays(path, frame, split):
     return {name: (values.shape, values.dtype) for name, values in arrays.items()}
 
 
-def collection(k, frame, split, made, forms):
-    """The grids of frame k; `made`: as from made_arrays."""
+def blocks_of(k, frame, split, made, forms):
+    """Block -> grid of frame k; without contacts the particles alone. `made`: as from made_arrays."""
+    time = plain(frame.attrs["time"])
     count = {"particles": made["displacement"][0][0], "contacts": made["force"][0][0]}
 
     def of(file, folder, group, names):
@@ -88,24 +99,23 @@ def collection(k, frame, split, made, forms):
     position = of(frame, "frames", "particles", ["position"])["position"]
     point = of(frame, "frames", "contacts", ["point"])["point"]
     forces = of(frame, "frames", "contacts", FORCES) | {"force": heavy["force"]}
-    grids = [grid("particles", f'TopologyType="Mixed" NumberOfElements="{count["particles"]}"', heavy["topology"],
-                  heavy["points"], "Cell",
-                  of(frame, "frames", "particles", OF_PARTICLES)
-                  | {name: heavy[name] for name in ("displacement", *STRESSES)}
-                  | (of(split, "splits", "particles", OF_SPLITS) if split else {}))]
+    grids = {"particles": grid(
+        "particles", time, f'TopologyType="Mixed" NumberOfElements="{count["particles"]}"', heavy["topology"],
+        heavy["points"], "Cell", of(frame, "frames", "particles", OF_PARTICLES)
+        | {name: heavy[name] for name in ("displacement", *STRESSES)}
+        | (of(split, "splits", "particles", OF_SPLITS) if split else {}))}
     if count["contacts"]:
         of_contacts = f'NumberOfElements="{count["contacts"]}"'
-        grids += [grid("contacts", f'TopologyType="Polyvertex" NodesPerElement="1" {of_contacts}',
-                       heavy["contact_points"], point, "Node", forces),
-                  grid("force_chains", f'TopologyType="Polyline" NodesPerElement="2" {of_contacts}',
-                       heavy["contact_lines"], position, "Cell", forces)]
-    return "\n".join([f'<Grid Name="frame {k}" GridType="Collection" CollectionType="Spatial">',
-                      f'<Time Value="{plain(frame.attrs["time"])!r}"/>', *grids, "</Grid>"])
+        grids["contacts"] = grid("contacts", time, f'TopologyType="Polyvertex" NodesPerElement="1" {of_contacts}',
+                                 heavy["contact_points"], point, "Node", forces)
+        grids["force_chains"] = grid("force_chains", time, f'TopologyType="Polyline" NodesPerElement="2" {of_contacts}',
+                                     heavy["contact_lines"], position, "Cell", forces)
+    return grids
 
 
-def grid(name, topology, cells, points, center, attributes):
-    return "\n".join([f'<Grid Name="{name}" GridType="Uniform">', f"<Topology {topology}>{cells}</Topology>",
-                      f'<Geometry GeometryType="XY">{points}</Geometry>',
+def grid(name, time, topology, cells, points, center, attributes):
+    return "\n".join([f'<Grid Name="{name}" GridType="Uniform">', f'<Time Value="{time!r}"/>',
+                      f"<Topology {topology}>{cells}</Topology>", f'<Geometry GeometryType="XY">{points}</Geometry>',
                       *(attribute(*one, center) for one in attributes.items()), "</Grid>"])
 
 
