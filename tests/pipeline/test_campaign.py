@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import time
+from types import SimpleNamespace
 
 import pytest
 import yaml
@@ -16,12 +17,12 @@ from conftest import REPOSITORY
 from patience import patience
 from rockbreak.campaign import biaxial_test as kind
 from rockbreak.campaign.table import read_campaign
-from rockbreak.campaign.report import paper_findings
+from rockbreak.campaign.report import paper_findings, versions_text
 from rockbreak.campaign.tables import conditions_of, numbers_of, scatter
 from rockbreak.errors import RockbreakError
 from rockbreak.campaign.plan import make_plan
 from rockbreak.run.run_directory import RunDirectory, attributes, is_valid
-from synthetic import CASE
+from synthetic import CASE, edited, write_run
 
 TWINS = {"breakable": {"effects": CASE["effects"]}, "solid": {"effects": CASE["effects"][:-1]}}
 
@@ -275,11 +276,24 @@ def processes_of(folder):
 
 
 def test_conditions_are_called_as_the_figures_call_them(work):
-    plan = work.plan(axes={"variant": TWINS, "preparation.confining_pressure": ["0.5e6", "2e6"], "seed": [1, 2],
+    plan = work.plan(axes={"variant": TWINS, "preparation.confining_pressure": ["0.5e+6", "2.0e+6"], "seed": [1, 2],
                            "shear.strain_rate": [0.02, 0.01]})
     assert [condition.label for condition in conditions_of(plan)][:3] == [
         "breakable, 0.5 MPa, strain rate 0.02", "breakable, 0.5 MPa, strain rate 0.01",
         "breakable, 2 MPa, strain rate 0.02"]
+
+
+def test_runs_of_different_versions_are_no_secret(tmp_path):
+    runs = [SimpleNamespace(out=write_run(tmp_path / name, frames=2, breakable=False),
+                            summary={"complete": True}) for name in "abc"]
+    assert versions_text(SimpleNamespace(runs=runs)) == ""
+    for run, version in zip(runs, ("2e2c6fe459ca", "2e2c6fe459ca", "103182a53e01")):
+        with edited(run.out / "frames" / "000000.h5") as frame:
+            frame.require_group("provenance").attrs["git"] = version
+    assert versions_text(SimpleNamespace(runs=runs)) == (
+        "Not all runs were made by the same version of dem: 2e2c6fe459ca (2 runs), 103182a53e01 (1 runs)")
+    runs[2].summary = None
+    assert versions_text(SimpleNamespace(runs=runs)) == "", "what is not finished is not shown"
 
 
 def test_what_became_of_the_paper_is_told_first(tmp_path):

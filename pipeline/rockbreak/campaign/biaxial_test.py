@@ -8,7 +8,8 @@ import yaml
 
 from .cases import as_words, explained, hash_of, value_at, without
 from ..run.child import REPOSITORY, executable
-from ..run.run_directory import RunDirectory, attributes
+from ..run.run_directory import RunDirectory, attributes, plain
+from ..sealed import open_sealed
 
 # Preparation sees the other keys; so does it any key that is new.
 UNSEEN_SECTIONS = ("shear", "breakage", "output")
@@ -154,6 +155,12 @@ def read_summary(out):
     except (FileNotFoundError, json.JSONDecodeError):
         return None
     return summary if summary.get("complete") else None
+
+
+def made_by(out):
+    """The version of `dem` that began a run, as its first frame tells; None if it does not."""
+    with open_sealed(RunDirectory(out).frame_file(0)) as frame:
+        return plain(frame["provenance"].attrs.get("git")) if "provenance" in frame else None
 
 
 def is_finished(out, report):

@@ -32,13 +32,14 @@ def write_campaign_report(campaign, plan, sample_seconds):
     commands = [shlex.join(run.command) for run in plan.runs]
     seconds = {"runs": sum(run.summary.get("cpu_seconds") or 0 for run in plan.runs if run.summary),
                "samples": sum(sample_seconds.values())}
-    findings = paper_findings(plan.out)
-    write_text(plan.out / "campaign.md", markdown(title, plan, conditions, runs, failed, commands, seconds, findings))
+    findings, versions = paper_findings(plan.out), versions_text(plan)
+    write_text(plan.out / "campaign.md", markdown(title, plan, conditions, runs, failed, commands, seconds, findings,
+                                                    versions))
     sections, paper = all_sections(plan), paper_section(plan.out)
     page = {
         "title": title, "plan": plan, "failed": failed, "commands": commands, "seconds": seconds,
         "done": sum(run.summary is not None for run in plan.runs), "sections": sections, "paper": paper,
-        "findings": findings,
+        "findings": findings, "versions": versions,
         "contents": contents(sections, (("conditions", "Conditions"),), (
             *((("paper", "Beside the paper"),) if paper else ()), ("runs", "Runs"), ("commands", "Commands"))),
         "conditions": table("conditions", *conditions), "runs": table("runs", *runs),
@@ -46,6 +47,13 @@ def write_campaign_report(campaign, plan, sample_seconds):
                     if RunDirectory(run.out).report_file.exists()}}
     write_text(plan.out / "campaign.html", render("campaign.html.j2", page))
     return plan.out / "campaign.html"
+
+
+def versions_text(plan):
+    """A warning if not all runs were begun by the same version of `dem`, else nothing: the code is not in their hash."""
+    found = Counter(kind.made_by(run.out) or "unknown" for run in plan.runs if run.summary)
+    return "" if len(found) < 2 else "Not all runs were made by the same version of dem: " + ", ".join(
+        f"{version} ({count} runs)" for version, count in found.most_common())
 
 
 def paper_section(out):
@@ -71,13 +79,15 @@ def paper_findings(out):
         f"{count} {verdict}" for verdict, count in counts.most_common()) for what, counts in found.items() if counts]
 
 
-def markdown(title, plan, conditions, runs, failed, commands, seconds, findings):
+def markdown(title, plan, conditions, runs, failed, commands, seconds, findings, versions):
     done = sum(run.summary is not None for run in plan.runs)
     parts = [f"# {title}", f"{done} of {len(plan.runs)} runs done, {len(failed)} failed. User seconds of dem and xfem: "
              f"{seconds['runs']:.0f} for the runs, {seconds['samples']:.0f} for the prepared samples. All numbers: "
              "`campaign.csv`."]
     if findings:
         parts.append("\n".join(f"- {finding}" for finding in findings))
+    if versions:
+        parts.append(f"**{versions}**")
     if failed:
         parts += ["## Failed", "\n".join(f"- `{run.name}` (exit code {run.code}): {run.failure}" for run in failed)]
     parts += ["## Conditions", "Mean ± standard deviation over the seeds.", markdown_table(*conditions),
