@@ -71,7 +71,7 @@ class LiveDisplay:
         self._live.update(content)
 
     def message(self, text):
-        self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+        self._console.print(text, markup=False, highlight=False)
 
 
 def for_stderr(on_terminal, otherwise):

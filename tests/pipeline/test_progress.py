@@ -14,6 +14,7 @@ from conftest import REPOSITORY
 from rockbreak.campaign.jobs import SHEARED, Job
 from rockbreak.campaign.progress import JsonCampaignProgress, Tally, TerminalCampaignProgress
 from rockbreak.live import time_text
+from rockbreak.run.ledger import read_ledger
 from patience import patience
 from synthetic import CASE
 
@@ -156,7 +157,10 @@ def test_a_run_says_that_it_sums_up_and_where_it_goes_on(tmp_path):
     assert first[-1] == {"source": "driver", "event": "progress", "stage": "summary"}
     (tmp_path / "run" / "frames" / "000002.h5").unlink()
     again = events(call("--resume", "--no-report"))
-    assert [event["frame"] for event in again if event["event"] == "frame"] == [1, 2], "the newest one first"
+    frames = [event for event in again if event["event"] == "frame"]
+    assert [event["frame"] for event in frames] == [1, 2], "the newest one first"
+    splits = [event for event in read_ledger(tmp_path / "run" / "run.jsonl") if event["event"] == "split"]
+    assert frames[0]["broken"] == sum(split["broken"] for split in splits[:2]) > 0
 
 
 def test_on_a_terminal_nothing_is_left_but_messages_and_the_path_of_the_report(tmp_path):

@@ -50,7 +50,7 @@ def write_campaign_report(campaign, plan, sample_seconds):
 
 
 def versions_text(plan):
-    """A warning if not all runs were begun by the same version of `dem`, else nothing: the code is not in their hash."""
+    """A warning if not all runs were begun by the same version of `dem`, else nothing: no hash covers the code."""
     found = Counter(kind.made_by(run.out) or "unknown" for run in plan.runs if run.summary)
     return "" if len(found) < 2 else "Not all runs were made by the same version of dem: " + ", ".join(
         f"{version} ({count} runs)" for version, count in found.most_common())

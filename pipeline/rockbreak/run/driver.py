@@ -105,8 +105,8 @@ class Run:
         if newest is not None:
             self._learn_case()
             self._register_unknown(newest)
-            self._tell(newest)
             self._solve_missing(newest)
+            self._tell(newest)
             if self._is_final(newest):
                 return
         clock = time.perf_counter()
