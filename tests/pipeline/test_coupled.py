@@ -25,7 +25,8 @@ def command(out, *arguments):
 
 
 def run(out, *arguments):
-    process = subprocess.run(command(out, *arguments), capture_output=True, text=True, check=False, timeout=patience(300))
+    process = subprocess.run(command(out, *arguments), capture_output=True, text=True, check=False,
+                             timeout=patience(300))
     assert process.returncode == 0, process.stderr[-3000:]
     return RunDirectory(out)
 

@@ -24,8 +24,9 @@ def test_the_table_lists_exactly_the_cases():
     assert list(table.written_rows()) == [table.cell(case.name) for case in CASES], "tests/robustness/run --write"
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, id=f"{case.part}-{case.folder}", marks=[pytest.mark.repeats] if case.tests else [])
-                                  for case in CASES if case.quick])
+@pytest.mark.parametrize("case", [
+    pytest.param(case, id=f"{case.part}-{case.folder}", marks=[pytest.mark.repeats] if case.tests else [])
+    for case in CASES if case.quick])
 def test_case(case, tmp_path):
     outcome = run_case(case, tmp_path)
     assert outcome.green, "\n".join(outcome.reasons)

@@ -28,7 +28,8 @@ def work(tmp_path, monkeypatch):
 
 
 def snakemake(out, *arguments):
-    return subprocess.run(["snakemake", *arguments], cwd=out, capture_output=True, text=True, timeout=patience(300), check=False)
+    return subprocess.run(["snakemake", *arguments], cwd=out, capture_output=True, text=True, timeout=patience(300),
+                          check=False)
 
 
 def write_rules(work, *arguments, **content):
@@ -54,6 +55,15 @@ def test_every_sample_and_run_is_a_rule_with_the_command_that_the_campaign_would
         assert sample["priority"] > jobs[run.name]["priority"]
     breakable, solid = (jobs[run.name]["priority"] for run in plan.runs[:2])
     assert breakable > solid
+
+
+def test_a_process_takes_no_more_processors_than_its_rule_says(work):
+    """Left to itself, xfem would take all."""
+    for arguments, threads in (((), 1), (("--threads", "3"), 3)):
+        write_rules(work, *arguments, axes=AXES)
+        jobs = json.loads((work.out / "plan.json").read_text())["jobs"]
+        assert len(jobs) == 6
+        assert all(job["threads"] == threads and f"--threads {threads}" in job["command"] for job in jobs)
 
 
 def test_the_dry_run_names_what_is_missing_and_runs_nothing(work):
