@@ -5,7 +5,7 @@ CAUSES = {
     ("contacts", "0 %"): "shapes and stiffness: 9 % more contacts at rest",
     ("weak_forces", "0 %"): "the paper's 0 % row has a mean force that its pressure cannot have",
     ("moderate_forces", "0 %"): "the paper's 0 % row has a mean force that its pressure cannot have",
-    "particles": "few contacts at low pressure come near the strength of Table 1, in every setting that was tried",
+    "particles": "at low pressure what breaks off first is smaller than the smallest piece allowed",
     "peak_strain": "flat curves: the place of the largest value scatters",
 }
 
