@@ -177,20 +177,30 @@ struct Stored {
   Stored(const Stored&) = delete;
 };
 
-Handle create_dataset(hid_t file, const std::string& path, const Item& item) {
+/// How datasets are made; one for a whole file, as the library takes longer over a property list than over a value.
+struct DatasetProperties {
   Handle link = properties(H5P_LINK_CREATE);
-  check(H5Pset_create_intermediate_group(link, 1), path);
-  Handle creation = properties(H5P_DATASET_CREATE);
-  check(H5Pset_obj_track_times(creation, false), path);
-  if (!item.shape.empty()) {  // the library has no checksums for scalars
+  Handle scalar = properties(H5P_DATASET_CREATE);  // the library has no checksums for scalars
+  Handle array = properties(H5P_DATASET_CREATE);   // in one chunk, whose size each dataset sets
+
+  DatasetProperties() {
+    check(H5Pset_create_intermediate_group(link, 1), "property list");
+    check(H5Pset_obj_track_times(scalar, false), "property list");
+    check(H5Pset_obj_track_times(array, false), "property list");
+    check(H5Pset_fletcher32(array), "property list");
+  }
+};
+
+Handle create_dataset(hid_t file, const std::string& path, const Item& item, const DatasetProperties& made) {
+  const hid_t creation = item.shape.empty() ? made.scalar : made.array;
+  if (!item.shape.empty()) {
     std::vector<hsize_t> chunk(item.shape.begin(), item.shape.end());
     for (hsize_t& n : chunk) n = n == 0 ? 1 : n;
     check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()), path);
-    check(H5Pset_fletcher32(creation), path);
   }
   const Stored stored(item);
-  Handle set(H5Dcreate2(file, path.c_str(), stored.type, space_of(item, path), link, creation, H5P_DEFAULT), H5Dclose,
-             path);
+  Handle set(H5Dcreate2(file, path.c_str(), stored.type, space_of(item, path), made.link, creation, H5P_DEFAULT),
+             H5Dclose, path);
   if (!item.bytes.empty()) {
     check(H5Dwrite(set, stored.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, stored.data), path);
   }
@@ -224,13 +234,14 @@ std::vector<std::byte> unsealed_image(const Contents& contents) {
   check(H5Pset_istore_k(creation, 1), "file");  // one chunk per dataset: the default index would be half of the file
   Handle file(H5Fcreate("image", H5F_ACC_TRUNC, creation, memory_access(std::size_t{1} << 18)), H5Fclose, "file");
 
+  const DatasetProperties made;
   Handle object;
   std::string open_path = "/";
   for (const auto& [path, item] : contents) {
     const std::size_t at = path.find('@');
     const std::string owner = path.substr(0, at);
     if (at == std::string::npos) {
-      object = create_dataset(file, path, item);
+      object = create_dataset(file, path, item, made);
     } else {
       if (owner != open_path) object = object_at(file, owner);
       create_attribute(object, path, path.substr(at + 1), item);

@@ -1,5 +1,7 @@
 #include "common/io/split.hpp"
 
+#include <set>
+
 #include "common/io/columns.hpp"
 #include "common/io/hdf5_file.hpp"
 
@@ -179,8 +181,11 @@ WrittenFile write_split(const std::filesystem::path& path, Split& split, Durabil
 
 Split read_split(const std::filesystem::path& path) {
   const Source source{path.string(), ExitCode::bad_input};
-  const Contents contents = read_hdf5(path);
   Split split;
+  std::set<std::string> wanted{kReason};
+  fields(split, [&](const char* name, const auto&, const char*, const char*, bool) { wanted.insert(name); });
+  work_fields(split.work, [&](const char* name, std::int64_t, const char*) { wanted.insert(name); });
+  const Contents contents = read_hdf5(path, &wanted);
   std::string schema;
   get_attribute(contents, "schema", true, source, schema);
   if (schema != kSchema) source.fail("attribute schema", fmt::format("is '{}', expected '{}'", schema, kSchema));
@@ -200,7 +205,7 @@ Split read_split(const std::filesystem::path& path) {
     value = values[0];
   });
   validate(split, source);
-  split.payload_hash = payload_hash(contents);
+  get_attribute(contents, "payload_hash", true, source, split.payload_hash);
   return split;
 }
 
