@@ -13,7 +13,7 @@ namespace xfem {
 
 namespace {
 
-constexpr double kPanel = 430, kMargin = 44, kHead = 104, kLegend = 96;
+constexpr double kPanel = 430, kMargin = 44, kHead = 104, kLegend = 96, kCaption = 16;
 constexpr int kColours = 64;
 constexpr const char* kSoft = "fill=\"#52606d\"";
 /// Above this the mesh lines would cover the field.
@@ -229,6 +229,7 @@ std::string lab_figure(const LabSetup& setup, const LabResult& result, const com
     height = canvas.bottom() + kMargin;
   }
   width = std::max(width, 740.0);
+  height += kCaption;  // below the arrows
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\" fill=\"#1f2933\">\n"
