@@ -11,6 +11,7 @@
 
 #include "common/config/scene.hpp"
 #include "common/error.hpp"
+#include "common/memory.hpp"
 #include "dem/contacts_of.hpp"
 #include "dem/explain.hpp"
 #include "dem/run.hpp"
@@ -86,6 +87,7 @@ void print(const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  common::keep_freed_memory();
   CLI::App app("Discrete elements: an assembly of convex polygons, prepared and sheared in a biaxial test");
   app.require_subcommand(1);
   Arguments a;

@@ -14,6 +14,7 @@
 #include "common/config/lab_test.hpp"
 #include "common/config/scene.hpp"
 #include "common/error.hpp"
+#include "common/memory.hpp"
 #include "xfem/explain.hpp"
 #include "xfem/interrupts.hpp"
 #include "xfem/lab/laboratory.hpp"
@@ -139,6 +140,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  common::keep_freed_memory();
   xfem::exit_on_signals();
   try {
     return run(argc, argv);

@@ -319,23 +319,35 @@ void read_attributes(hid_t object, const std::string& owner, std::uint64_t limit
   }
 }
 
-struct Visited {
-  std::string path;
-  H5O_type_t kind;
-};
-
-std::vector<Visited> objects_in(hid_t file) {
-  std::vector<Visited> objects;
-  const auto collect = [](hid_t, const char* name, const H5O_info_t* info, void* target) -> herr_t {
+/// Paths of all objects; that of the root is empty.
+std::vector<std::string> objects_in(hid_t file) {
+  std::vector<std::string> paths;
+  const auto collect = [](hid_t, const char* name, const H5O_info_t*, void* target) -> herr_t {
     try {
-      static_cast<std::vector<Visited>*>(target)->push_back({std::string(name) == "." ? "" : name, info->type});
+      static_cast<std::vector<std::string>*>(target)->push_back(std::string(name) == "." ? "" : name);
     } catch (...) {  // no exception may pass through the library
       return -1;
     }
     return 0;
   };
-  check(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, collect, &objects, H5O_INFO_BASIC), "objects");
-  return objects;
+  check(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, collect, &paths, H5O_INFO_BASIC), "objects");
+  return paths;
+}
+
+bool stands_in(hid_t file, const std::string& path) {
+  for (std::size_t to = path.find('/');; to = path.find('/', to + 1)) {
+    if (check(H5Lexists(file, path.substr(0, to).c_str(), H5P_DEFAULT), path) == 0) return false;
+    if (to == std::string::npos) return true;
+  }
+}
+
+/// The root and, of `wanted`, what is there.
+std::vector<std::string> wanted_in(hid_t file, const std::set<std::string>& wanted) {
+  std::vector<std::string> paths{""};
+  for (const std::string& path : wanted) {
+    if (stands_in(file, path)) paths.push_back(path);
+  }
+  return paths;
 }
 
 /// The size of the file that its own superblock states; 0 if that cannot be told (a user block, other address sizes).
@@ -370,11 +382,10 @@ Contents contents_of_image(std::span<std::byte> image, const std::set<std::strin
   // Compression gives at most a factor of about 1000.
   const std::uint64_t limit = 1000 * image.size() + (std::uint64_t{1} << 20);
   Contents contents;
-  for (const auto& [path, kind] : objects_in(file)) {
-    if (wanted && !path.empty() && !wanted->contains(path)) continue;
+  for (const std::string& path : wanted ? wanted_in(file, *wanted) : objects_in(file)) {
     const std::string where = "dataset " + path;
     const Handle object(H5Oopen(file, path.empty() ? "/" : path.c_str(), H5P_DEFAULT), H5Oclose, where);
-    if (kind == H5O_TYPE_DATASET) {
+    if (H5Iget_type(object) == H5I_DATASET) {
       const Handle type(H5Dget_type(object), H5Tclose, where);
       const Handle space(H5Dget_space(object), H5Sclose, where);
       contents[path] = read_item(type, space, where, limit, [&](hid_t memory, void* target) {
