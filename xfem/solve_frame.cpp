@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <optional>
 
 #include "common/error.hpp"
@@ -158,7 +157,7 @@ common::Split FrameSolver::solve(const common::Frame& frame, const common::Split
   std::vector<ParticleCase> cases;
   // Room for the ids of all fragments that there can be.
   const std::int64_t largest = std::max(frame.next_id, frame.particles.id.empty() ? 0 : frame.particles.id.back());
-  if (largest >= std::numeric_limits<std::int64_t>::max() - 2 * std::ssize(frame.particles.id))
+  if (largest >= common::kLargestCount - 2 * std::ssize(frame.particles.id))
     throw common::bad_input(fmt::format("frame {}: ids up to {} leave none for fragments", frame.frame, largest));
   {
     const PhaseTimer timer(self.seconds, "loads");

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/io/contents.hpp"
+#include "common/io/frame.hpp"
 
 namespace common {
 
@@ -148,6 +149,15 @@ inline void check_ascending(const std::string& path, const std::vector<std::int6
     if (ids[i] <= ids[i - 1]) {
       source.fail_dataset(path, fmt::format("entry {} is {} after {}, expected ascending ids", i, ids[i], ids[i - 1]));
     }
+  }
+}
+
+/// Ascending ids that leave room for more.
+inline void check_ids(const std::string& path, const std::vector<std::int64_t>& ids, const Source& source) {
+  check_ascending(path, ids, source);
+  if (!ids.empty() && ids.back() >= kLargestCount) {
+    source.fail_dataset(
+        path, fmt::format("entry {} is {}, expected less than {}", ids.size() - 1, ids.back(), kLargestCount));
   }
 }
 

@@ -96,7 +96,7 @@ void validate_columns(const std::string& group, const std::vector<Column>& colum
 }
 
 void validate_particles(const Particles& p, const Source& source) {
-  check_ascending("particles/id", p.id, source);
+  check_ids("particles/id", p.id, source);
   check_offsets("particles/vertex_offset", p.vertex_offset, p.size(), p.vertices.size(), source);
   check_finite("particles/vertices", p.vertices, source);
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -151,11 +151,10 @@ void validate_checkpoint(const Frame& frame, const Source& source) {
     source.fail("attribute next_id",
                 fmt::format("is {}, expected more than the largest particle id {}", frame.next_id, p.id.back()));
   }
-  constexpr std::int64_t kLargest = std::int64_t{1} << 62;  // what goes on from here still counts upward
   for (const auto& [name, value] :
        {std::pair{"frame", frame.frame}, {"step", frame.step}, {"next_id", frame.next_id}}) {
-    if (value < 0 || value > kLargest) {
-      source.fail(fmt::format("attribute {}", name), fmt::format("is {}, expected 0 to {}", value, kLargest));
+    if (value < 0 || value > kLargestCount) {
+      source.fail(fmt::format("attribute {}", name), fmt::format("is {}, expected 0 to {}", value, kLargestCount));
     }
   }
 }

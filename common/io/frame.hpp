@@ -61,6 +61,9 @@ struct Column {
   std::vector<double> values;
 };
 
+/// Frames, steps and ids of particles count up to here: what goes on from a file still counts upward.
+inline constexpr std::int64_t kLargestCount = std::int64_t{1} << 62;
+
 struct Frame {
   std::int64_t frame = 0;
   std::int64_t step = 0;

@@ -115,7 +115,7 @@ void validate_fragments(const Split& split, const Source& source) {
   check_finite("broken/path", broken.path, source);
   check_rows("fragments/id", f.id.size(), 2 * broken.parent.size(), source);
   check_rows("fragments/parent", f.parent.size(), f.id.size(), source);
-  check_ascending("fragments/id", f.id, source);
+  check_ids("fragments/id", f.id, source);
   check_offsets("fragments/vertex_offset", f.vertex_offset, f.id.size(), f.vertices.size(), source);
   check_finite("fragments/vertices", f.vertices, source);
   for (std::size_t i = 0; i < f.id.size(); ++i) {

@@ -52,9 +52,11 @@ class Started:
         for line in self.log.read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("{") and '"progress"' in line:
                 try:
-                    return json.loads(line)
+                    event = json.loads(line)
                 except json.JSONDecodeError:
-                    pass
+                    continue
+                if event.get("source") == "dem":
+                    return event
         return None
 
 

@@ -155,6 +155,8 @@ std::vector<Fault> faults_for_all() {
   const std::vector<Fault> others = {
       with("particles/id", Ids{3, 17, 9, 40}, "dataset particles/id: entry 2 is 9 after 17, expected ascending ids"),
       with("particles/id", Ids{3, 9, 9, 40}, "dataset particles/id: entry 2 is 9 after 9, expected ascending ids"),
+      with("particles/id", Ids{3, 9, 17, std::numeric_limits<std::int64_t>::max()},
+           "dataset particles/id: entry 3 is 9223372036854775807, expected less than 4611686018427387904"),
       with("particles/id", std::vector<float>{3, 9, 17, 40}, "dataset particles/id: type is float32, expected int64"),
       with("particles/position", Ids{1, 2, 3, 4}, "dataset particles/position: shape is (4), expected (n, 2)"),
       with("particles/position", std::vector<std::array<double, 3>>(4),

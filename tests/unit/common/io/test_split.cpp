@@ -134,6 +134,8 @@ TEST_CASE("A spoiled split is refused with dataset, what was found and what was 
   check("fragments/id", item(Ids{40, 41}), "entry 0 is 40, which is already in particles/id");
   check("fragments/id", item(Ids{41}), "has 1 rows, expected 2");
   check("fragments/id", item(Ids{42, 41}), "entry 1 is 41 after 42, expected ascending ids");
+  check("fragments/id", item(Ids{41, std::numeric_limits<std::int64_t>::max()}),
+        "entry 1 is 9223372036854775807, expected less than 4611686018427387904");
   check("fragments/parent", item(Ids{9, 17}), "entry 1 is 17, expected 9 as in broken/parent");
   check("fragments/vertex_offset", item(Ids{0, 8, 8}), "entry 2 is 8 after 8, expected an ascending sequence");
   std::vector<Vec2> vertices = sample_split().fragments.vertices;
