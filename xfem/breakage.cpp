@@ -173,7 +173,7 @@ double Analysis::imbalance(const Stress& mean) const {
 bool Analysis::solve() {
   state_ = solver_.solve(cracks_);
   if (!state_.solved) refuse("the cracked system is singular: a part of the particle is loose (" + state_.defect + ")");
-  if (!state_.settled) refuse("friction on the closed crack faces did not settle");
+  if (!state_.settled) refuse("contact of the crack faces did not settle");
   return state_.solved && state_.settled;
 }
 

@@ -17,7 +17,7 @@ Vec2 chord_end(Draws& draws, const Polygon& outline, double size) {
   const std::size_t edge = draws.byte() % outline.size();
   const double t = draws.one_in(4) ? std::ldexp(1, -draws.integer(0, 60)) : draws.unit();
   Vec2 end = outline[edge] + t * (outline[(edge + 1) % outline.size()] - outline[edge]);
-  if (draws.one_in(4)) end += size * Vec2(draws.magnitude(-60, -18), draws.magnitude(-60, -18));
+  if (draws.one_in(4)) end += size * Vec2{draws.magnitude(-60, -18), draws.magnitude(-60, -18)};
   return end;
 }
 
@@ -50,15 +50,16 @@ void check_fragments(Draws& draws, const Polygon& outline, const common::ChordSp
   state.next_id = draws.byte();
   const int before = draws.integer(0, 3), after = draws.integer(0, 3);
   const auto add_neighbour = [&] {
-    bodies::add(state, bodies::box(size, size), size * Vec2(draws.uniform(-3, 3), draws.uniform(-3, 3)));
+    bodies::add(state, bodies::box(size, size), size * Vec2{draws.uniform(-3, 3), draws.uniform(-3, 3)});
     state.particles.boundary.back() = draws.flag();
   };
   for (int k = 0; k < before; ++k) add_neighbour();
-  bodies::add(state, outline, size * Vec2(draws.uniform(-1, 1), draws.uniform(-1, 1)), draws.uniform(-7, 7));
+  const Vec2 at = size * Vec2{draws.uniform(-1, 1), draws.uniform(-1, 1)};
+  bodies::add(state, outline, at, draws.uniform(-7, 7));
   for (int k = 0; k < after; ++k) add_neighbour();
   auto& p = state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p.velocity[i] = Vec2(draws.uniform(-1, 1), draws.uniform(-1, 1));
+    p.velocity[i] = Vec2{draws.uniform(-1, 1), draws.uniform(-1, 1)};
     p.angular_velocity[i] = draws.uniform(-10, 10);
     for (std::size_t j = i + 1; j < p.size(); ++j) {
       if (!draws.flag()) continue;

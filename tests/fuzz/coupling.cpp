@@ -47,8 +47,8 @@ dem::State state_of(Draws& draws, const common::Scene& scene) {
     const Vec2 center = common::centroid(outline);
     for (Vec2& v : outline) v -= center;
     if (!common::outline_defect(outline).empty()) continue;
-    const Vec2 at = draws.one_in(24) ? Vec2(draws.number(1), draws.number(1))
-                                     : Vec2(draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5));
+    const Vec2 at = draws.one_in(24) ? Vec2{draws.number(1), draws.number(1)}
+                                     : Vec2{draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5)};
     if (state.next_id >= std::numeric_limits<std::int64_t>::max() - 8) break;
     bodies::add(state, outline, at, draws.one_in(24) ? draws.number(7) : draws.uniform(-7, 7));
     auto& p = state.particles;
@@ -56,7 +56,7 @@ dem::State state_of(Draws& draws, const common::Scene& scene) {
       state.ring.push_back(static_cast<std::int32_t>(p.size()) - 1);
       p.boundary.back() = 1;
     }
-    if (draws.flag()) p.velocity.back() = Vec2(draws.number(1), draws.number(1));
+    if (draws.flag()) p.velocity.back() = Vec2{draws.number(1), draws.number(1)};
     if (draws.flag()) p.angular_velocity.back() = draws.number(10);
     if (draws.one_in(32)) p.mass.back() = std::abs(draws.number(1));
   }

@@ -1,5 +1,7 @@
 // Numbers and shapes drawn from the bytes of an input, one after another: near inputs give near structures, which is
 // what lets a fuzzer climb. After the last byte every draw is the one of a zero byte.
+// Two draws in one expression stand in braces: arguments in parentheses are evaluated in any order, and an input must
+// mean the same with every compiler.
 #pragma once
 
 #include <bit>
@@ -49,8 +51,10 @@ class Draws {
         return 0;
       case 13:
         return magnitude(-128, 127) * size;
-      case 14:
-        return std::ldexp(magnitude(0, 3), 8 * integer(-134, 127));
+      case 14: {
+        const double mantissa = magnitude(0, 3);
+        return std::ldexp(mantissa, 8 * integer(-134, 127));
+      }
       case 15:
         return std::bit_cast<double>(bits<std::uint64_t>());
       default:
@@ -74,7 +78,7 @@ class Draws {
       const common::Rotation on_circle(scale * angle);
       polygon.push_back(turn * common::Vec2(on_circle.cos, aspect * on_circle.sin));
     }
-    if (one_in(8)) polygon[byte() % polygon.size()] += common::Vec2(magnitude(-54, -4), magnitude(-54, -4));
+    if (one_in(8)) polygon[byte() % polygon.size()] += common::Vec2{magnitude(-54, -4), magnitude(-54, -4)};
     return polygon;
   }
 

@@ -34,8 +34,9 @@ void bring_together(Draws& draws, const Polygon& a, Polygon& b) {
     const Vec2 turn = Vec2(from.dot(to), common::cross(to, from)) / std::sqrt(from.squaredNorm() * to.squaredNorm());
     for (Vec2& v : b) v = Vec2(turn.x() * v.x() - turn.y() * v.y(), turn.y() * v.x() + turn.x() * v.y());
   }
-  Vec2 shift = point(a, i, kind & 1 ? draws.unit() : 0) - point(b, j, kind & 2 ? draws.unit() : 0);
-  if (draws.flag()) shift += Vec2(draws.magnitude(-56, -20), draws.magnitude(-56, -20));
+  const Vec2 target = point(a, i, kind & 1 ? draws.unit() : 0);
+  Vec2 shift = target - point(b, j, kind & 2 ? draws.unit() : 0);
+  if (draws.flag()) shift += Vec2{draws.magnitude(-56, -20), draws.magnitude(-56, -20)};
   for (Vec2& v : b) v += shift;
   if (kind == 4 && draws.flag()) {
     b[(j + 1) % b.size()] = a[i];
@@ -59,7 +60,7 @@ void overlap(Input input) {
   if (a.empty() || b.empty()) return;
   const double ratio = draws.one_in(4) ? std::ldexp(1, -draws.integer(0, 24)) : draws.uniform(0.3, 1);
   for (Vec2& v : b) v = ratio * v;
-  const Vec2 position(draws.uniform(-2, 2), draws.uniform(-2, 2));
+  const Vec2 position{draws.uniform(-2, 2), draws.uniform(-2, 2)};
   for (Vec2& v : b) v += position;
   for (int moves = draws.integer(0, 2); moves > 0; --moves) bring_together(draws, a, b);
   const double scale = std::ldexp(0.25, draws.one_in(4) ? draws.integer(-20, 20) : 0);

@@ -21,7 +21,7 @@ namespace xfem {
 
 struct CrackedState {
   bool solved = true;   ///< false: the system is singular, a part of the particle is loose
-  bool settled = true;  ///< false: friction on the crack faces found no state (solved, but not to be used)
+  bool settled = true;  ///< false: contact of the crack faces found no state (solved, but not to be used)
   std::string defect;   ///< why it is not solved, in numbers
   Eigen::VectorXd u;    ///< nodal displacement (2 n) [m]
   Eigen::VectorXd q;    ///< enriched dofs, 2 per function [m]

@@ -13,7 +13,8 @@ namespace xfem {
 struct FaceContact {
   Eigen::VectorXd q;          ///< enriched dofs, 2 per function [m]
   int closed_segments = 0;    ///< in contact
-  bool settled = true;        ///< false: with friction, no state was found that meets Coulomb's law on all faces
+  bool settled = true;        ///< false: no state was found in which open faces do not overlap and closed ones do not
+                              ///< pull, and that with friction meets Coulomb's law on all of them
   std::vector<double> shear;  ///< per face, with friction: shear stress that resists its slip [Pa]; else empty
 };
 
@@ -21,7 +22,7 @@ struct FaceContact {
 /// enriched dofs with the standard ones eliminated, penalty in N/m^3. Empty if S is singular.
 /// Active set: segments that would overlap are closed, closed ones that would open are released. Left alone such a set
 /// may run in circles, so each new solution is approached only as far as the energy falls, which ends after finitely
-/// many steps.
+/// many steps: about as many as there are faces where a crack peels open.
 std::optional<FaceContact> solve_face_contact(const DenseSymmetric& schur, const Eigen::VectorXd& right,
                                               const std::vector<FaceSegment>& faces, double penalty);
 

@@ -239,7 +239,7 @@ bool Walk::check(int every) {
     return false;
   }
   if (!state_.settled) {
-    fail(tally_.unsettled, "friction does not settle");
+    fail(tally_.unsettled, "contact does not settle");
     return false;
   }
   const Residual residual = residual_of(model_, loads_, patch_, outline_, state_);

@@ -37,7 +37,7 @@ struct Tally {
   std::int64_t impure = 0;     ///< states with other bits than those of a new solver
   std::int64_t not_finite = 0;
   std::int64_t over_limit = 0;  ///< scaled residual above kResidualLimit, with friction kFrictionResidualLimit
-  std::int64_t unsettled = 0;   ///< friction found no state: such a particle is refused, its residual not looked at
+  std::int64_t unsettled = 0;   ///< contact found no state: such a particle is refused, its residual not looked at
   std::int64_t virial_over_limit = 0;
   std::int64_t turned = 0;  ///< states with more than 1e-10 of the load unbalanced, on a part that turns far
   std::int64_t closed = 0;  ///< states with faces in contact

@@ -7,6 +7,7 @@
 
 #include "common/io/split.hpp"
 #include "tests/robustness/xfem/full_system.hpp"
+#include "tests/robustness/xfem/growth_walk.hpp"
 #include "tests/unit/xfem/crack/plates.hpp"
 #include "tests/unit/xfem/outlines.hpp"
 #include "tests/unit/xfem/sample_frame.hpp"
@@ -109,6 +110,75 @@ TEST_CASE("A crack around a node, through all elements of its fan but one, is so
     CHECK(change < 10 * fraction + 1e-12);
     CHECK((change > 1e-6) == (fraction >= 0.02));
   }
+}
+
+TEST_CASE("A crack beside an edge that a load peels open settles, however many faces it has") {
+  // Its faces open one after another, from the end: more than 100 solves for 53 of them.
+  constexpr double kHeight = 0.2;
+  const common::Polygon strip{{0, 0}, {1, 0}, {1, kHeight}, {0, kHeight}};
+  const double depth = GENERATE(0.003, 0.01);
+  const int nodes = GENERATE(75, 150, 300);
+  const IntactModel model(make_mesh(strip, nodes), plates::kRock);
+  const std::vector<Vec2> line{{0, depth}, {0.9, depth}};
+  const Crack crack = place_polyline(model.mesh(), line, {TipState::at_boundary, TipState::active});
+  REQUIRE(crack_defect(model.mesh(), crack).empty());
+  const std::vector<std::vector<Load>> cases{
+      {{{0.02, 0}, {0, 1e4}}, {{0.5, kHeight}, {0, -1e4}}},
+      {{{0, depth / 2}, {1e4, 0}}, {{1, kHeight / 2}, {-1e4, 0}}},
+      {{{0.1, 0}, {1e4, -1e2}}, {{1, kHeight / 2}, {-1e4, 0}}},
+      {{{1, kHeight / 2}, {1e4, 3e3}}},
+      {{{0, kHeight}, {1e4, 0}}, {{1, kHeight}, {3e3, -2e4}}},
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    INFO(nodes << " nodes, crack at " << depth << ", loads " << i);
+    const CrackedState state = CrackedSolver(model, cases[i]).solve({&crack, 1});
+    REQUIRE(state.solved);
+    REQUIRE(state.settled);
+    // Faces that were left closed although they pull would be forces on open faces here.
+    const growth_walks::Residual residual = growth_walks::residual_of(model, cases[i], 0, strip, state);
+    CHECK(residual.scaled < growth_walks::kResidualLimit);
+  }
+}
+
+TEST_CASE("Faces that only just touch settle: loads between two sets, to the last digit") {
+  // Whether such a face is closed or open is rounding, and neither set need agree with its own solution.
+  constexpr double kHeight = 0.2;
+  const common::Polygon strip{{0, 0}, {1, 0}, {1, kHeight}, {0, kHeight}};
+  const IntactModel model(make_mesh(strip, 75), plates::kRock);
+  const std::vector<Vec2> line{{0, 0.06}, {0.7, 0.11}};
+  const Crack crack = place_polyline(model.mesh(), line, {TipState::at_boundary, TipState::active});
+  REQUIRE(crack_defect(model.mesh(), crack).empty());
+  common::Random random(5);
+  int sets = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<Load> low, high;
+    for (int k = 0; k < 4; ++k) {
+      const Vec2 at(random.uniform(), k % 2 == 0 ? 0 : kHeight);
+      low.push_back({at, 1e5 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1))});
+      high.push_back({at, 1e5 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1))});
+    }
+    const auto between = [&](double share) {
+      std::vector<Load> loads = low;
+      for (std::size_t k = 0; k < loads.size(); ++k) {
+        loads[k].force = (1 - share) * low[k].force + share * high[k].force;
+      }
+      const CrackedState state = CrackedSolver(model, loads).solve({&crack, 1});
+      INFO("trial " << trial << " at " << share);
+      REQUIRE(state.solved);
+      REQUIRE(state.settled);
+      CHECK(growth_walks::residual_of(model, loads, 0, strip, state).scaled < growth_walks::kResidualLimit);
+      return state.closed_segments;
+    };
+    double from = 0, to = 1;
+    const int closed = between(from);
+    if (between(to) == closed) continue;
+    ++sets;
+    for (int halving = 0; halving < 54; ++halving) {
+      const double middle = (from + to) / 2;
+      (between(middle) == closed ? from : to) = middle;
+    }
+  }
+  CHECK(sets > 100);
 }
 
 TEST_CASE("Loads out of balance by 1 to 22 % change stress and load factor in proportion to what is added") {
