@@ -170,7 +170,7 @@ class Run {
     guard_state();
     history_.record(*engine_, control_);
     common::Frame frame = snapshot();
-    common::write_frame(path, frame, scene_.output.durability);
+    common::write_frame(path, frame, common::kDurable);
     if (!is_replay_) remove_failure(options_.directory);
   }
 

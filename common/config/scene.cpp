@@ -211,7 +211,8 @@ void bind_output(Specification& keys, OutputOptions& output) {
         });
   };
   count("output.durability", output.durability.interval, "none", "every",
-        "fsync after every file, every N-th, or none; a killed process loses nothing either way, a power cut may");
+        "fsync after every frame and split, every N-th, or none: a power cut may cost the newest, which --resume makes "
+        "anew");
   count("output.keep_frames", output.keep_frames, "all", "",
         "frames that stay on disk; a run takes only all, since every frame holds a part of the history");
 }

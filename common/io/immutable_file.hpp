@@ -16,6 +16,9 @@ struct Durability {
   int interval = 0;  ///< 0: none, 1: every file, n: every n-th
 };
 
+/// For the few files that everything else hangs on.
+inline constexpr Durability kDurable{1};
+
 /// What the ledger keeps of a written file.
 struct WrittenFile {
   std::filesystem::path path;

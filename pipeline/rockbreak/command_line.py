@@ -86,6 +86,7 @@ def is_concluded(directory, with_report):
 def conclude(directory, with_report):
     """Summary of one finished run, with its report and run.xdmf, whose time goes into both ledger and summary."""
     results = Results(directory)
+    directory.bring_to_disk()  # whoever finds a summary need not look for what it was made from
     write_summary(directory, results.summary)
     if not with_report:
         with Ledger(directory.ledger_file) as ledger:

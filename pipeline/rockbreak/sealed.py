@@ -39,3 +39,12 @@ def sealed_content(path):
     if seal != seal_of(image):
         raise RockbreakError(IO_FAILURE, f"{path}: unreadable: damaged, its bytes do not match the checksum at its end")
     return content
+
+
+def is_sealed(path):
+    """Whether a file is there with the bytes that were written."""
+    try:
+        sealed_content(path)
+    except RockbreakError:
+        return False
+    return True

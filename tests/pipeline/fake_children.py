@@ -19,6 +19,7 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / "pipeline")]
 import synthetic  # noqa: E402
 from fake_explain import resolved  # noqa: E402
 from rockbreak.run.run_directory import RunDirectory, attributes, broken_in, is_valid  # noqa: E402
+from rockbreak.sealed import seal_of  # noqa: E402
 
 
 def install(folder):
@@ -55,7 +56,8 @@ class FakeDem:
         self.run = RunDirectory(option(arguments, "--out"))
         self.breakable = "breakage" in self.case["effects"]
         self.run.path.mkdir(parents=True, exist_ok=True)
-        self.run.case_file.write_text(yaml.safe_dump(self.case))
+        in_order = sorted(self.case.items(), key=lambda item: item[0] == "output")  # the last section, as dem writes it
+        self.run.case_file.write_text(yaml.safe_dump(dict(in_order), sort_keys=False))
         self.last = self.case["shear"]["frames"] - 1
         unlogged = ("--out", "--set", "--profile")
         log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in unlogged),
@@ -79,7 +81,7 @@ class FakeDem:
             history["stress_yy"] = history["stress_xx"] * (1 + self.fake["peak"]) / (1 - self.fake["peak"])
         if k == 0 and not self.case["preparation"].get("from"):
             (self.run.path / "prepared").mkdir(exist_ok=True)
-            (self.run.path / "prepared" / "sample.h5").write_text("a sample")
+            (self.run.path / "prepared" / "sample.h5").write_bytes(b"a sample" + seal_of(b"a sample"))
         path = self.run.frame_file(k)
         value = synthetic.write_frame(path, assembly, k, strain, k == self.last, contacts, history, step=k)
         print(json.dumps({"event": "progress", "stage": "shear", "step": k}), file=sys.stderr)

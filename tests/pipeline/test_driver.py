@@ -182,8 +182,8 @@ def test_the_ledger_states_size_and_hashes_of_every_file(work):
 @pytest.mark.parametrize("lost, first_solve", [("splits/000002.h5", "000002"), ("frames/000002.h5", "000002"),
                                                ("frames/000001.h5", "000003"), (None, "000003")])
 def test_resume_goes_on_from_the_newest_frame_whatever_is_missing(work, mode, lost, first_solve):
-    """Lost: the newest split; the newest frame, whose split must not be believed; a frame in between, which nobody
-    needs; nothing."""
+    """Lost: the newest split; the newest frame, whose split must not be believed; a frame in between, which is made
+    anew; nothing."""
     work.scene(frames=5)
     work.run()
     whole = work.payloads()
@@ -194,8 +194,6 @@ def test_resume_goes_on_from_the_newest_frame_whatever_is_missing(work, mode, lo
         (work.out / lost).unlink()
     work.calls()
     assert work.run("--mode", mode, "--resume").returncode == 0
-    if lost == "frames/000001.h5":
-        del whole[lost]
     assert work.payloads() == whole
     solves = [call for call in work.calls() if "solve" in call]
     assert first_solve in solves[0]
@@ -215,6 +213,49 @@ def test_resume_does_not_believe_damaged_files(work):
     assert work.run("--resume").returncode == 0
     assert work.payloads() == whole
     assert not (work.out / "frames" / "000009.h5.tmp").exists()
+
+
+@pytest.mark.parametrize("damage", [lambda content: b"", lambda content: bytes(len(content)),
+                                    lambda content: content[:200]], ids=["empty", "zeros", "cut"])
+def test_resume_makes_anew_what_lies_between_whole_files(work, damage):
+    work.scene(frames=5)
+    work.run()
+    whole = work.payloads()
+    for file in (work.directory.frame_file(0), work.directory.frame_file(1), work.directory.split_file(2),
+                 work.directory.case_file):
+        file.write_bytes(damage(file.read_bytes()))
+    known = len(work.events("frame")), len(work.events("split"))
+    process = work.run("--resume")
+    assert process.returncode == 0, process.err
+    assert work.payloads() == whole
+    assert (len(work.events("frame")), len(work.events("split"))) == (known[0] + 2, known[1] + 1)
+    assert [event["text"] for event in work.events("warning") if "made anew" in event["text"]] == [
+        f"frames/{k:06d}.h5 is lost or damaged; it is made anew" for k in (0, 1)]
+    assert not work.directory.restoring.exists()
+
+
+def test_a_frame_that_another_program_makes_anew_is_refused(work):
+    work.scene(frames=5)
+    work.run()
+    work.directory.frame_file(2).unlink()
+    ledger = work.directory.ledger_file.read_text()
+    payload = next(event["payload_hash"] for event in work.events("frame") if event["frame"] == 2)
+    work.directory.ledger_file.write_text(ledger.replace(payload, "0" * 32))
+    process = work.run("--resume")
+    assert process.returncode == 2 and "000002.h5" in process.err and "another version of dem" in process.err
+    assert not work.directory.frame_file(2).exists()
+
+
+def test_the_ledger_goes_on_where_a_machine_left_zeros(work):
+    work.scene(frames=5)
+    work.run()
+    work.directory.frame_file(4).unlink()
+    content = work.directory.ledger_file.read_bytes()
+    cut = content.index(b'"frame": 3') + 3
+    work.directory.ledger_file.write_bytes(content[:cut] + bytes(5000) + content[cut + 300:])
+    assert work.run("--resume").returncode == 0
+    assert [event["frame"] for event in work.events("frame")] == [0, 1, 2, 3, 4]
+    assert [event["frame"] for event in work.events("split")] == [0, 1, 2, 3, 4]
 
 
 def test_resume_of_a_finished_run_ends_at_once(work):

@@ -18,6 +18,7 @@ sys.path.insert(0, str(REPOSITORY / "tests" / "robustness" / "lost"))
 from lost_damage import KINDS, PROGRAMS, Bench  # noqa: E402
 from lost_faults import Sweep  # noqa: E402
 from lost_kills import Campaign  # noqa: E402
+from lost_power import LEFT, PowerCuts  # noqa: E402
 
 FULL_DEVICE = "/dev/full"  # every write to it finds no space
 
@@ -39,6 +40,13 @@ def test_ended_by_signals_at_random_and_resumed_a_run_is_the_uninterrupted_one(t
         campaign.one_run(6)
     assert campaign.faults == []
     assert campaign.kills == 6 and set(campaign.counts["signal"]) == {"term", "int"}
+
+
+def test_after_a_power_cut_the_resumed_run_is_the_uninterrupted_one(tmp_path):
+    cuts = PowerCuts(tmp_path, 1)
+    for _ in range(8):
+        cuts.one()
+    assert cuts.faults == [] and all(cuts.counts[kind] > 0 for kind in LEFT)
 
 
 def test_damaged_files_are_refused_made_anew_or_read_as_written_by_each_program(tmp_path):

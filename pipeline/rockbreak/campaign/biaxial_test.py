@@ -9,7 +9,7 @@ import yaml
 from .cases import as_words, explained, hash_of, value_at, without
 from ..run.child import REPOSITORY, executable
 from ..run.run_directory import RunDirectory, attributes, plain
-from ..sealed import open_sealed
+from ..sealed import is_sealed, open_sealed
 
 # Preparation sees the other keys; so does it any key that is new.
 UNSEEN_SECTIONS = ("shear", "breakage", "output")
@@ -134,7 +134,7 @@ def sample_file(out):
 
 def sample_is_finished(out):
     """Frame 0 is written after the sample."""
-    return all(file.exists() for file in sample_results(out))
+    return all(map(is_sealed, sample_results(out)))
 
 
 def sample_results(out):

@@ -14,9 +14,9 @@ from ..errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
 from .programs import OneShotDem, OneShotXfem, ResidentDem, ResidentXfem
-from .run_directory import (RunDirectory, attributes, broken_in, is_valid, make_folder, open_written, refusals_of,
-                            state_of)
-from ..sealed import open_sealed
+from .restore import restore_frame
+from .run_directory import RunDirectory, attributes, broken_in, make_folder, open_written, refusals_of, state_of
+from ..sealed import is_sealed, open_sealed
 
 
 @dataclass
@@ -103,9 +103,10 @@ class Run:
         newest = self.directory.newest_valid_frame()
         self.directory.drop_splits_after(newest)
         if newest is not None:
+            if not self.directory.has_case():
+                self._finish_at_once(newest)
             self._learn_case()
-            self._register_unknown(newest)
-            self._solve_missing(newest)
+            self._make_whole(newest)
             self._tell(newest)
             if self._is_final(newest):
                 return
@@ -143,32 +144,38 @@ class Run:
             make_folder(self.directory.path / "splits")
             self._broken = 0
 
+    def _finish_at_once(self, newest):
+        """A `dem` that has nothing left to do but to write a case.yaml that is missing."""
+        self.start("dem", [*self.dem_arguments(), "--until-frame", str(newest)]).finish()
+
     def _is_final(self, k):
         return bool(attributes(self.directory.frame_file(k)).get("final", 0))
 
-    def _register_unknown(self, newest):
-        """Frames and splits that stand here, but of which the ledger had not heard when the driver was killed."""
-        known = {event.get("path") for event in read_ledger(self.directory.ledger_file)}
+    def _make_whole(self, newest):
+        """Every frame and split up to the newest frame stands, and the ledger has it: also those that a machine lost as
+        it went down, and those that the driver had not written down when it was killed."""
+        known = {event["path"]: event.get("payload_hash") for event in read_ledger(self.directory.ledger_file)
+                 if event["event"] in ("frame", "split")}
         for k in range(newest + 1):
-            if f"frames/{k:06d}.h5" not in known and is_valid(self.directory.frame_file(k)):
-                self._register_frame(k, dem_seconds=0.0)
-            if self._breakable and f"splits/{k:06d}.h5" not in known and self.directory.split_answers(k):
-                self._register_split(k, waited=0.0, handover=0.0)
-
-    def _solve_missing(self, newest):
-        """Every split that a resumed run needs: of the newest frame, and of any before it that were lost."""
-        if not self._breakable:
-            return
-        first = newest
-        while first >= 0 and not self.directory.split_answers(first):
-            self.directory.split_file(first).unlink(missing_ok=True)
-            first -= 1
-        self._broken = sum(broken_in(self.directory.split_file(k)) for k in range(first + 1))
-        for k in range(first + 1, newest + 1):
             begin = time.perf_counter()
-            self._ask(k)
-            self._xfem.answer()
-            self._register_split(k, waited=time.perf_counter() - begin, handover=0.0)
+            frame, split = self.directory.frame_file(k), self.directory.split_file(k)
+            stood = is_sealed(frame)
+            if not stood:
+                restore_frame(self, k, known.get(f"frames/{frame.name}"))
+            if not stood or f"frames/{frame.name}" not in known:
+                self._register_frame(k, dem_seconds=0.0 if stood else time.perf_counter() - begin)
+            if not self._breakable:
+                continue
+            begin = time.perf_counter()
+            stood = self.directory.split_answers(k)
+            if not stood:
+                split.unlink(missing_ok=True)
+                self._ask(k)
+                self._xfem.answer()
+            if not stood or f"splits/{split.name}" not in known:
+                self._register_split(k, waited=0.0 if stood else time.perf_counter() - begin, handover=0.0)
+            else:
+                self._broken += broken_in(split)
 
     def _ask(self, k):
         self._xfem.ask(f"frames/{k:06d}.h5", f"splits/{k - 1:06d}.h5" if k > 0 else None, f"splits/{k:06d}.h5")

@@ -14,8 +14,8 @@ from ..errors import BAD_INPUT, RockbreakError, cannot
 
 
 class Ledger:
-    """Appends events. A line that a killed run left half written is cut off before the first append, one that the disk
-    had no room for at once."""
+    """Appends events. A line that a killed run left half written is cut off before the first append, with all from the
+    first zero byte on, which a machine leaves that goes down; one that the disk had no room for at once."""
 
     def __init__(self, path):
         self.path = path
@@ -53,8 +53,9 @@ def _drop_half_line(path):
     try:
         with open(path, "rb+") as file:
             content = file.read()
-            if content and not content.endswith(b"\n"):
-                file.truncate(content.rfind(b"\n") + 1)
+            whole = content.split(b"\0", 1)[0].rfind(b"\n") + 1
+            if whole < len(content):
+                file.truncate(whole)
     except FileNotFoundError:
         pass
 

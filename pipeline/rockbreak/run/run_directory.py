@@ -5,6 +5,7 @@ paraview/000000.h5
 """
 import fcntl
 import os
+import shutil
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -28,6 +29,7 @@ class RunDirectory:
     report_file = property(lambda self: self.path / "report.html")
     figures = property(lambda self: self.path / "figures")
     xdmf_file = property(lambda self: self.path / "run.xdmf")
+    restoring = property(lambda self: self.path / ".restoring")  # where a lost frame is made anew
 
     def frame_file(self, k):
         return self.path / "frames" / f"{k:06d}.h5"
@@ -61,6 +63,20 @@ class RunDirectory:
             raise RockbreakError(BAD_INPUT, f"{self.case_file}: found no mapping of keys")
         return case
 
+    def has_case(self):
+        """Whether case.yaml stands, down to its last section."""
+        try:
+            return "output" in self.case()
+        except RockbreakError:
+            return False
+
+    def bring_to_disk(self):
+        """Frames and splits survive whatever happens to the machine from now on."""
+        for folder in ("frames", "splits"):
+            files = sorted((self.path / folder).glob("*.h5"))
+            for path in [*files, *([self.path / folder] if files else [])]:
+                bring_to_disk(path)
+
     def breaks_particles(self):
         return "breakage" in (self.case().get("effects") or [])
 
@@ -72,10 +88,12 @@ class RunDirectory:
         return None
 
     def split_answers(self, k):
-        """True if split k is valid and was made from the frame k that stands here."""
-        path = self.split_file(k)
-        return is_valid(path) and attributes(path).get("frame_hash") == attributes(self.frame_file(k)).get(
-            "payload_hash")
+        """True if split k stands and was made from the frame k that stands here."""
+        try:
+            asked = attributes(self.frame_file(k)).get("payload_hash")
+            return attributes(self.split_file(k)).get("frame_hash") == asked
+        except RockbreakError:
+            return False
 
     def drop_splits_after(self, k):
         """Removes splits that answer no frame up to k, with half-written files."""
@@ -85,6 +103,7 @@ class RunDirectory:
         for folder in (".", "frames", "splits", "prepared", "figures", "paraview"):
             for leftover in (self.path / folder).glob("*.tmp"):
                 leftover.unlink()
+        shutil.rmtree(self.restoring, ignore_errors=True)
 
     def lock(self):
         return lock_directory(self.path, "pipeline/run", holders="pipeline/run or dem")
@@ -124,14 +143,27 @@ def write_text(path, text):
 
 
 def write_whole(path, content):
-    """A file that is either the old one or the new one, whole."""
+    """A file that is either the old one or the new one, whole, also after a power cut."""
     temporary = path.with_name(path.name + ".tmp")
     try:
         temporary.write_bytes(content)
+        bring_to_disk(temporary)
         os.replace(temporary, path)
+        bring_to_disk(path.parent)
     except OSError as error:
         temporary.unlink(missing_ok=True)
         raise cannot("write", path, error) from error
+
+
+def bring_to_disk(path):
+    """fsync of a file or folder. Raises OSError with its name."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        os.close(descriptor)
 
 
 def make_folder(path):
