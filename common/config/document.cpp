@@ -1,5 +1,6 @@
 #include "common/config/document.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cerrno>
@@ -71,6 +72,32 @@ class Converter {
   int count_ = 0;
 };
 
+// Where documents start. YAML::LoadAll never ends over text after which each document begins where the last one did.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  std::vector<YAML::Mark> starts;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { starts.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+// Places of the first two documents, as far as there are any.
+std::vector<YAML::Mark> starts_of_documents(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts handler;
+  while (handler.starts.size() < 2 && parser.HandleNextDocument(handler)) {
+  }
+  return handler.starts;
+}
+
 std::string line_of(const std::string& text, int number) {
   std::istringstream lines(text);
   std::string line;
@@ -81,16 +108,14 @@ std::string line_of(const std::string& text, int number) {
 
 Value parse(const std::string& text, const Source& source) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      throw bad_input(source.place(documents[1].Mark()) + ": found a second YAML document, expected one");
-    }
-    if (documents.empty()) {
+    const std::vector<YAML::Mark> starts = starts_of_documents(text);
+    if (starts.size() > 1) throw bad_input(source.place(starts[1]) + ": found a second YAML document, expected one");
+    if (starts.empty()) {
       Value nothing;
       nothing.where = source.name;
       return nothing;
     }
-    return Converter(source).convert(documents[0], 0);
+    return Converter(source).convert(YAML::Load(text), 0);
   } catch (const YAML::Exception& error) {
     // yaml-cpp reports most tabs as something else, further on in the line.
     const std::string line = line_of(text, error.mark.line);
