@@ -26,7 +26,7 @@ class RunDirectory {
   /// The prepared sample, as `preparation.from` of other scenes takes it.
   std::filesystem::path sample() const { return root_ / "prepared" / "sample.h5"; }
 
-  /// Writes case.yaml; one that is there and can be read is kept, but for its guards, or replaced.
+  /// Writes case.yaml; one that is there is kept, but for its guards, or replaced.
   enum class Existing { kept, replaced };
   void write_case(const common::Scene& scene, Existing existing) const;
 

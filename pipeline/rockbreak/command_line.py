@@ -79,14 +79,14 @@ def is_concluded(directory, with_report):
     kinds = [event["event"] for event in read_ledger(directory.ledger_file)]
     changed = max((at for at, kind in enumerate(kinds) if kind in ("frame", "split")), default=-1)
     concluded = kinds[changed + 1:]
-    return (directory.summary_file.exists() and ("summary" in concluded or "report" in concluded)
+    return (directory.summary() is not None and ("summary" in concluded or "report" in concluded)
             if not with_report else directory.report_file.exists() and "report" in concluded)
 
 
 def conclude(directory, with_report):
     """Summary of one finished run, with its report and run.xdmf, whose time goes into both ledger and summary."""
     results = Results(directory)
-    directory.bring_to_disk()  # whoever finds a summary need not look for what it was made from
+    directory.bring_results_to_disk()  # whoever finds a summary need not look for what it was made from
     write_summary(directory, results.summary)
     if not with_report:
         with Ledger(directory.ledger_file) as ledger:

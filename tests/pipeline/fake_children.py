@@ -57,7 +57,8 @@ class FakeDem:
         self.breakable = "breakage" in self.case["effects"]
         self.run.path.mkdir(parents=True, exist_ok=True)
         in_order = sorted(self.case.items(), key=lambda item: item[0] == "output")  # the last section, as dem writes it
-        self.run.case_file.write_text(yaml.safe_dump(dict(in_order), sort_keys=False))
+        if not self.run.case_file.exists():
+            self.run.case_file.write_text(yaml.safe_dump(dict(in_order), sort_keys=False))
         self.last = self.case["shear"]["frames"] - 1
         unlogged = ("--out", "--set", "--profile")
         log("dem", *(word for word in arguments[2:] if word.startswith("--") and word not in unlogged),
@@ -95,6 +96,8 @@ class FakeDem:
     def work(self):
         newest = self.run.newest_valid_frame()
         if newest is not None and attributes(self.run.frame_file(newest))["final"]:
+            return 0
+        if newest is not None and 0 <= self.until <= newest:
             return 0
         if newest is not None and self.breakable and not is_valid(self.run.split_file(newest)):
             print(f"dem: error: split {newest} is missing", file=sys.stderr)

@@ -237,6 +237,15 @@ def test_when_a_sample_fails_its_runs_fail_and_no_other(work):
     assert [row["state"] for row in work.rows()] == ["failed", "failed", "done"]
 
 
+def test_a_damaged_sample_is_prepared_anew(work):
+    assert work.run(runs=[{"seed": 1}]).returncode == 0
+    (sample,) = (work.out / "samples").glob("*/prepared/sample.h5")
+    whole = sample.read_bytes()
+    sample.write_bytes(b"")
+    assert work.run(runs=[{"seed": 1}, {"seed": 1, "shear.strain_rate": 0.01}]).returncode == 0
+    assert sample.read_bytes() == whole
+
+
 def test_an_interrupted_campaign_ends_its_processes_and_goes_on(work):
     axes = {"seed": [1, 2]}
     work.scene(fake={"slow": 0.3})

@@ -234,16 +234,18 @@ def test_resume_makes_anew_what_lies_between_whole_files(work, damage):
     assert not work.directory.restoring.exists()
 
 
-def test_a_frame_that_another_program_makes_anew_is_refused(work):
+@pytest.mark.parametrize("kind, k", [("frame", 1), ("split", 2)])
+def test_what_another_program_makes_anew_otherwise_is_refused(work, kind, k):
     work.scene(frames=5)
     work.run()
-    work.directory.frame_file(2).unlink()
+    lost = work.out / f"{kind}s" / f"{k:06d}.h5"
+    lost.unlink()
     ledger = work.directory.ledger_file.read_text()
-    payload = next(event["payload_hash"] for event in work.events("frame") if event["frame"] == 2)
+    payload = next(event["payload_hash"] for event in work.events(kind) if event["frame"] == k)
     work.directory.ledger_file.write_text(ledger.replace(payload, "0" * 32))
     process = work.run("--resume")
-    assert process.returncode == 2 and "000002.h5" in process.err and "another version of dem" in process.err
-    assert not work.directory.frame_file(2).exists()
+    assert process.returncode == 2 and f"{kind}s/{k:06d}.h5 is lost" in process.err and "nother version" in process.err
+    assert not lost.exists() and not work.directory.restoring.exists()
 
 
 def test_the_ledger_goes_on_where_a_machine_left_zeros(work):

@@ -5,7 +5,9 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import pytest
 
@@ -159,6 +161,35 @@ def test_a_directory_that_vanishes_ends_the_run_and_it_can_begin_anew(whole, tmp
     assert processes_in(out) == []
     subprocess.run(run_command(out, resume=True), check=True, capture_output=True)
     assert differences(results(out), results(whole)) == []
+
+
+@pytest.mark.parametrize("lines", [2, 30, 60, 75])
+@pytest.mark.parametrize("frames", [True, False], ids=["frames", "only_a_sample"])
+def test_the_head_of_a_case_is_no_case(whole, tmp_path, frames, lines):
+    """It would read as a scene with defaults for what is gone."""
+    out = cut(whole, tmp_path / "run")
+    case = RunDirectory(out).case_file
+    text = case.read_text()
+    case.write_text("".join(text.splitlines(keepends=True)[:lines]))
+    if not frames:
+        shutil.rmtree(out / "frames")
+        shutil.rmtree(out / "splits")
+    subprocess.run(run_command(out, resume=True), check=True, capture_output=True)
+    assert differences(results(out), results(whole)) == [] and case.read_text() == text
+
+
+def test_a_lost_frame_is_made_anew_with_the_guards_of_the_command_on_another_disk_than_its_folder(whole, tmp_path):
+    out = tmp_path / "run"
+    shutil.copytree(whole, out)
+    with tempfile.TemporaryDirectory(dir="/dev/shm") as elsewhere:
+        shutil.move(out / "frames", elsewhere)
+        (out / "frames").symlink_to(Path(elsewhere) / "frames")
+        RunDirectory(out).frame_file(LAST_KEPT).unlink()
+        resume = run_command(out, resume=True)
+        strict = subprocess.run([*resume, "--set", "guards.overlap=1e-9"], capture_output=True, text=True, check=False)
+        assert strict.returncode == 3, strict.stderr
+        subprocess.run([*resume, "--set", "guards.overlap=0.5"], check=True, capture_output=True)
+        assert differences(results(out), results(whole)) == []
 
 
 def test_a_directory_may_have_blanks_quotes_and_any_letters_in_its_name(whole, tmp_path):

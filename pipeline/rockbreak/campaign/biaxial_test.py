@@ -1,7 +1,6 @@
 """What a campaign needs to know of its kind of run: how `pipeline/run` is called for a biaxial test, what identifies
 it, which part of it its preparation sees, where its numbers stand. Another kind of run has the same functions.
 """
-import json
 from pathlib import Path
 
 import yaml
@@ -137,6 +136,12 @@ def sample_is_finished(out):
     return all(map(is_sealed, sample_results(out)))
 
 
+def clear_sample(out):
+    """Makes way for a sample to be prepared: `dem` does not where a frame 0 stands, as if from a damaged one."""
+    if not is_sealed(sample_file(out)):
+        RunDirectory(out).frame_file(0).unlink(missing_ok=True)
+
+
 def sample_results(out):
     """What a finished sample has written."""
     return [sample_file(out), RunDirectory(out).frame_file(0)]
@@ -150,11 +155,8 @@ def results(out, report):
 
 def read_summary(out):
     """The numbers of a run that has reached its end; None of any other."""
-    try:
-        summary = json.loads(RunDirectory(out).summary_file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, json.JSONDecodeError):
-        return None
-    return summary if summary.get("complete") else None
+    summary = RunDirectory(out).summary()
+    return summary if summary and summary.get("complete") else None
 
 
 def made_by(out):

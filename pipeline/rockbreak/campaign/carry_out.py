@@ -52,6 +52,7 @@ def make_jobs(plan):
         if run.sample and not run.sample.is_finished():
             after = sample_jobs.get(run.sample.hash)
             if after is None:
+                run.kind.clear_sample(run.sample.out)
                 after = sample_jobs[run.sample.hash] = Job(f"samples/{run.sample.out.name}", run.sample.command,
                                                            plan.out / "logs" / f"sample_{run.sample.out.name}.log",
                                                            effort=run.sample.effort)

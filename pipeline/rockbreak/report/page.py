@@ -74,7 +74,7 @@ class Files:
         makers = {".svg": lambda: svg_document(drawn.figure, name).encode(),
                   ".png": lambda: png_bytes(drawn.figure, PNG_DPI), ".csv": lambda: drawn.data.text().encode()}
         for kind in self._kinds:
-            write_whole(self._folder / f"{self._prefix}{name}{kind}", makers[kind]())
+            write_whole(self._folder / f"{self._prefix}{name}{kind}", makers[kind](), durable=False)
 
 
 def figure_sections(selection, *files):

@@ -14,9 +14,9 @@ from ..errors import BAD_INPUT, IO_FAILURE, Interrupted, RockbreakError
 from .ledger import Ledger, read_ledger
 from .payload_hash import xxh3_128
 from .programs import OneShotDem, OneShotXfem, ResidentDem, ResidentXfem
-from .restore import restore_frame
-from .run_directory import RunDirectory, attributes, broken_in, make_folder, open_written, refusals_of, state_of
-from ..sealed import is_sealed, open_sealed
+from .restore import require_same, restore_frame
+from .run_directory import RunDirectory, attributes, make_folder, open_written, refusals_of, state_of
+from ..sealed import open_sealed
 
 
 @dataclass
@@ -51,10 +51,10 @@ class Run:
     def threads(self):
         return [] if self.options.threads is None else ["--threads", str(self.options.threads)]
 
-    def dem_arguments(self):
-        """Always --resume: whether the directory may be used has been settled here."""
+    def dem_arguments(self, out=None):
+        """Always --resume: whether the directory may be used has been settled here. `out`: another directory."""
         overrides = [word for override in self.options.overrides for word in ("--set", override)]
-        return ["run", str(self.options.case), "--out", str(self.options.out), "--resume", *overrides,
+        return ["run", str(self.options.case), "--out", str(out or self.options.out), "--resume", *overrides,
                 *self.threads(), "--profile", "-"]
 
     def start(self, name, arguments, cwd=None):
@@ -100,13 +100,19 @@ class Run:
             child.stop(signum)
 
     def _loop(self):
+        if not self.directory.has_case():
+            self.directory.case_file.unlink(missing_ok=True)  # the head of one reads as a case with defaults
         newest = self.directory.newest_valid_frame()
-        self.directory.drop_splits_after(newest)
+        self.directory.clear_after(newest)
         if newest is not None:
-            if not self.directory.has_case():
-                self._finish_at_once(newest)
+            hashes = [self.directory.frame_hash(k) for k in range(newest + 1)]
+            lost = None in hashes
+            if lost or not self.directory.case_file.exists():
+                self._settle_case(newest)
             self._learn_case()
-            self._make_whole(newest)
+            if lost:
+                self._tell(newest)
+            self._make_whole(hashes)
             self._tell(newest)
             if self._is_final(newest):
                 return
@@ -144,38 +150,42 @@ class Run:
             make_folder(self.directory.path / "splits")
             self._broken = 0
 
-    def _finish_at_once(self, newest):
-        """A `dem` that has nothing left to do but to write a case.yaml that is missing."""
+    def _settle_case(self, newest):
+        """A `dem` that has nothing left to do but to refuse another scene, and to write a case.yaml that is missing."""
         self.start("dem", [*self.dem_arguments(), "--until-frame", str(newest)]).finish()
 
     def _is_final(self, k):
         return bool(attributes(self.directory.frame_file(k)).get("final", 0))
 
-    def _make_whole(self, newest):
+    def _make_whole(self, hashes):
         """Every frame and split up to the newest frame stands, and the ledger has it: also those that a machine lost as
-        it went down, and those that the driver had not written down when it was killed."""
-        known = {event["path"]: event.get("payload_hash") for event in read_ledger(self.directory.ledger_file)
+        it went down, and those that the driver had not written down when it was killed. `hashes`: of the frames, None
+        for those that do not stand."""
+        known = {event.get("path"): event.get("payload_hash") for event in read_ledger(self.directory.ledger_file)
                  if event["event"] in ("frame", "split")}
-        for k in range(newest + 1):
+        for k, frame_hash in enumerate(hashes):
+            frame, split = f"frames/{k:06d}.h5", f"splits/{k:06d}.h5"
+            answered, broken = self.directory.answer(k)
             begin = time.perf_counter()
-            frame, split = self.directory.frame_file(k), self.directory.split_file(k)
-            stood = is_sealed(frame)
-            if not stood:
-                restore_frame(self, k, known.get(f"frames/{frame.name}"))
-            if not stood or f"frames/{frame.name}" not in known:
-                self._register_frame(k, dem_seconds=0.0 if stood else time.perf_counter() - begin)
+            lost = frame_hash is None
+            if lost:
+                frame_hash = restore_frame(self, k, known.get(frame) or answered)
+            if lost or frame not in known:
+                self._register_frame(k, dem_seconds=time.perf_counter() - begin if lost else 0.0)
             if not self._breakable:
                 continue
             begin = time.perf_counter()
-            stood = self.directory.split_answers(k)
-            if not stood:
-                split.unlink(missing_ok=True)
+            stands = answered == frame_hash
+            if not stands:
+                self.directory.split_file(k).unlink(missing_ok=True)
                 self._ask(k)
                 self._xfem.answer()
-            if not stood or f"splits/{split.name}" not in known:
-                self._register_split(k, waited=0.0 if stood else time.perf_counter() - begin, handover=0.0)
+                if k + 1 < len(hashes):  # the frame after it stands on it
+                    require_same(self.directory.split_file(k), known.get(split))
+            if stands and split in known:
+                self._broken += broken
             else:
-                self._broken += broken_in(split)
+                self._register_split(k, waited=0.0 if stands else time.perf_counter() - begin, handover=0.0)
 
     def _ask(self, k):
         self._xfem.ask(f"frames/{k:06d}.h5", f"splits/{k - 1:06d}.h5" if k > 0 else None, f"splits/{k:06d}.h5")

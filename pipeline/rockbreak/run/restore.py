@@ -2,29 +2,44 @@
 last seconds and loses others, in any order; a disk spoils older ones."""
 import os
 import shutil
+from pathlib import Path
 
-from ..errors import BAD_INPUT, RockbreakError, cannot
+from ..errors import BAD_INPUT, NUMERICAL_FAILURE, RockbreakError, cannot
+from ..sealed import is_sealed
 from .run_directory import RunDirectory, attributes, make_folder
 
 
 def restore_frame(run, k, expected):
     """Makes frame k anew, by a `dem` that goes on from the frame and split before it, or from the prepared sample, in a
-    folder of its own. `expected`: payload hash that the ledger has of it, None if it does not know."""
+    folder of its own. `expected`: its payload hash, None if nobody knows it. Returns its payload hash."""
     directory, scratch = run.directory, RunDirectory(run.directory.restoring)
-    begin_from(directory, scratch, k)
     run.child_event("driver", {"event": "warning", "text": f"frames/{k:06d}.h5 is lost or damaged; it is made anew"})
-    run.start("dem", ["run", str(scratch.case_file), "--out", str(scratch.path), "--resume", "--until-frame", str(k),
-                      *run.threads()]).finish()
-    found = attributes(scratch.frame_file(k)).get("payload_hash")
-    if expected not in (None, found):
-        raise RockbreakError(BAD_INPUT, f"{directory.frame_file(k)}: is lost or damaged, and what is made anew has the "
-                             f"payload {found}, expected {expected} as in {directory.ledger_file.name}: this is "
-                             f"another version of dem; remove frames {k} and later to go on with it from there")
     try:
-        os.replace(scratch.frame_file(k), directory.frame_file(k))
-    except OSError as error:
-        raise cannot("write", directory.frame_file(k), error) from error
+        begin_from(directory, scratch, k)
+        run.start("dem", [*run.dem_arguments(scratch.path), "--until-frame", str(k)]).finish()
+        found = require_same(scratch.frame_file(k), expected)
+        take_over(scratch.frame_file(k), directory.frame_file(k))
+        sample = Path("prepared", "sample.h5")
+        if (scratch.path / sample).exists() and not is_sealed(directory.path / sample):
+            take_over(scratch.path / sample, directory.path / sample)
+    except RockbreakError as error:
+        if error.code == NUMERICAL_FAILURE:  # its message names a file in there
+            raise
+        shutil.rmtree(scratch.path, ignore_errors=True)
+        raise
     shutil.rmtree(scratch.path, ignore_errors=True)
+    return found
+
+
+def require_same(path, expected):
+    """The payload hash of a frame or split that was made anew; refused and removed if later ones stand on another."""
+    found = attributes(path).get("payload_hash")
+    if expected not in (None, found):
+        path.unlink()
+        raise RockbreakError(BAD_INPUT, f"{path.parent.name}/{path.name} is lost or damaged; made anew it has the payload "
+                             f"{found}, expected {expected}, on which later ones stand. Another version of dem or xfem "
+                             "has made those: resume with that one, or remove this frame, its split and all later ones")
+    return found
 
 
 def begin_from(directory, scratch, k):
@@ -39,3 +54,14 @@ def begin_from(directory, scratch, k):
             shutil.copyfile(file, target)
         except OSError as error:
             raise cannot("write", target, error) from error
+
+
+def take_over(source, target):
+    """Moves a file, whose folder may be on another disk, to its place at once."""
+    temporary = target.with_name(target.name + ".tmp")
+    try:
+        shutil.move(source, temporary)
+        os.replace(temporary, target)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise cannot("write", target, error) from error

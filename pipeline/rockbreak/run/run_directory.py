@@ -1,9 +1,10 @@
 """A run directory: where its files stand, which frames are valid, and its lock.
 
 DIR/case.yaml, run.jsonl, frames/000000.h5, splits/000000.h5, summary.json, report.html, figures/*, run.xdmf,
-paraview/000000.h5
+paraview/000000.h5; for a while .restoring/
 """
 import fcntl
+import json
 import os
 import shutil
 from contextlib import contextmanager
@@ -70,12 +71,19 @@ class RunDirectory:
         except RockbreakError:
             return False
 
-    def bring_to_disk(self):
+    def bring_results_to_disk(self):
         """Frames and splits survive whatever happens to the machine from now on."""
         for folder in ("frames", "splits"):
             files = sorted((self.path / folder).glob("*.h5"))
             for path in [*files, *([self.path / folder] if files else [])]:
                 bring_to_disk(path)
+
+    def summary(self):
+        """The numbers in summary.json; None without a whole one."""
+        try:
+            return json.loads(self.summary_file.read_text(encoding="utf-8"))
+        except (FileNotFoundError, ValueError):
+            return None
 
     def breaks_particles(self):
         return "breakage" in (self.case().get("effects") or [])
@@ -87,16 +95,24 @@ class RunDirectory:
                 return k
         return None
 
-    def split_answers(self, k):
-        """True if split k stands and was made from the frame k that stands here."""
+    def frame_hash(self, k):
+        """Payload hash that frame k states; None if it does not stand."""
         try:
-            asked = attributes(self.frame_file(k)).get("payload_hash")
-            return attributes(self.split_file(k)).get("frame_hash") == asked
+            return attributes(self.frame_file(k)).get("payload_hash")
         except RockbreakError:
-            return False
+            return None
 
-    def drop_splits_after(self, k):
-        """Removes splits that answer no frame up to k, with half-written files."""
+    def answer(self, k):
+        """(payload hash of the frame that split k answers, number of particles that it breaks); (None, 0) if the split
+        does not stand."""
+        try:
+            with open_sealed(self.split_file(k)) as split:
+                return plain(split.attrs.get("frame_hash")), len(split["broken/parent"])
+        except (OSError, KeyError, RockbreakError):
+            return None, 0
+
+    def clear_after(self, k):
+        """Removes splits that answer no frame up to k, half-written files, and what an interrupted restoring left."""
         for number in self.split_numbers():
             if k is None or number > k:
                 self.split_file(number).unlink()
@@ -142,14 +158,16 @@ def write_text(path, text):
     write_whole(path, text.encode("utf-8"))
 
 
-def write_whole(path, content):
-    """A file that is either the old one or the new one, whole, also after a power cut."""
+def write_whole(path, content, durable=True):
+    """A file that is either the old one or the new one, whole; if durable, also after a power cut."""
     temporary = path.with_name(path.name + ".tmp")
     try:
         temporary.write_bytes(content)
-        bring_to_disk(temporary)
+        if durable:
+            bring_to_disk(temporary)
         os.replace(temporary, path)
-        bring_to_disk(path.parent)
+        if durable:
+            bring_to_disk(path.parent)
     except OSError as error:
         temporary.unlink(missing_ok=True)
         raise cannot("write", path, error) from error

@@ -79,7 +79,7 @@ def made_arrays(path, frame, split):
     except OSError:
         pass  # none, or a damaged one
     arrays = arrays_of(frame, split)
-    write_whole(path, file_image(arrays, source))
+    write_whole(path, file_image(arrays, source), durable=False)  # made anew from the frames
     return {name: (values.shape, values.dtype) for name, values in arrays.items()}
 
 

@@ -1,7 +1,7 @@
 """Power cuts: what a file system leaves of files that it had not yet brought to the disk, in any order.
 
 No program can cut the power; a cut is made of a finished run by what ext4 and its like are known to leave behind a
-rename without fsync: no name, an empty file, zeros of the right length, the first pages only, or the file.
+rename without fsync: no name, an empty file, zeros of the right length, the first part only, or the file.
 """
 import argparse
 import random
@@ -22,7 +22,8 @@ LEFT = {
     "gone": None,
     "empty": lambda content: b"",
     "zeros": lambda content: bytes(len(content)),
-    "first pages": lambda content: content[:len(content) // 2 // PAGE * PAGE].ljust(len(content), b"\0"),
+    "first pages": lambda content: content[:(len(content) // PAGE + 1) // 2 * PAGE].ljust(len(content), b"\0"),
+    "shorter": lambda content: content[:content.find(b"\n", len(content) // 3) + 1],  # of YAML, whole lines
 }
 
 
