@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "common/config/values.hpp"
 #include "common/error.hpp"
@@ -68,8 +69,15 @@ std::vector<CsvRow> read_csv(const std::filesystem::path& file, const std::strin
 }
 
 void require_file(const std::filesystem::path& file, const std::string& content) {
-  if (!std::filesystem::exists(file)) throw bad_input(file.string() + ": the file does not exist");
-  if (std::filesystem::is_directory(file)) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw bad_input(file.string() + ": the file does not exist");
+  }
+  if (status.type() == std::filesystem::file_type::none) {
+    throw bad_input(file.string() + ": the file cannot be read: " + error.message());
+  }
+  if (status.type() == std::filesystem::file_type::directory) {
     throw bad_input(file.string() + ": found a directory, expected a file of " + content);
   }
 }

@@ -98,6 +98,7 @@ TEST_CASE("A wrong grading is reported with its point and place") {
 
   const std::string place = "s.yaml:1:21: " + key;
   CHECK(error("none.csv") == place + "none.csv: the file does not exist");
+  CHECK_THAT(error(std::string(300, 'x')), Catch::Matchers::EndsWith("x: the file cannot be read: File name too long"));
   folder.write("g.csv", "");
   CHECK(error("g.csv") == place + "g.csv: the file has no points of a curve, expected rows of diameter,passing");
   folder.write("g.csv", "d,p\n0.1,0\n0.2;1\n");
